@@ -5,10 +5,11 @@
 use lodray::format::Scene;
 use lodray::method::ClosestHit;
 use lodray::method::bvh::{BvhTraverser, FullBvh, FullOptions, LeafLayout, NodeBoxes};
-use lodray::method::cluster::{Cut, FrameBvh, Graph, Kind, Rule, Snapped, pack};
+use lodray::method::cluster::{Cut, FrameBvh, Graph, Kind, Rule, Snapped, pack, pack_dense};
 use lodray::num::Ray;
 use lodray::rays::{Camera, ModelSpace, Sight, View};
 use lodray::step::NoSteps;
+use rayon::prelude::*;
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -64,6 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let (graphing, graph) = timed(|| Graph::build(&scene, kind, 16));
             let graph = graph?;
             let bytes: usize = graph.clusters.iter().map(|cluster| pack(&graph, cluster).len()).sum();
+            let dense: usize = graph.clusters.par_iter().map(|cluster| size_of_val(pack_dense(&graph, cluster).0.as_slice())).sum();
             let sight = Sight::new(&camera, &space, 1.0);
             let (selecting, cut) = timed(|| Cut::new(&graph, &rule, &sight.eyes));
             let (clusters, asked) = (cut.clusters.len(), cut.asked.len());
@@ -75,7 +77,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "{}",
                 json!({
                     "scene": name, "of": of, "finest": graph.finest, "clusters": graph.clusters.len(), "groups": graph.groups.len(),
-                    "triangles": graph.triangles.len(), "bytes": bytes, "roots": roots, "coarsest": coarsest,
+                    "triangles": graph.triangles.len(), "bytes": bytes, "dense": dense, "roots": roots, "coarsest": coarsest,
                     "snapping": snapping, "graph": graphing - snapping, "selecting": selecting, "building": building,
                     "frame": frame.triangles.len(), "frame_clusters": clusters, "asked": asked,
                     "seconds": seconds, "rays": rays.len(), "hits": hits, "peak": peak(),
