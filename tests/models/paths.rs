@@ -566,6 +566,7 @@ fn bad_descriptions_are_one_line_that_names_file_and_key() {
         (["--camera", "side"], "there is no camera 'side'; there are: front"),
         (["--starts", "-1"], "'-1' is not exact, independent, or a number from 0 on"),
         (["--machine", "none"], "there is no machine none"),
+        (["--packet", "32"], "--packet: paths are traced one by one"),
     ] {
         let output = lodray(folder.path()).args(["paths", "a.toml", "-o", "out"]).args(arguments).assert().failure().get_output().clone();
         let text = String::from_utf8(output.stderr).expect("text");

@@ -12,10 +12,10 @@ use super::made::{camera, description, facts, methods, model_files, paths, scene
 use super::method::MachineMethod;
 use super::names::named;
 use super::output::{print_json, progress, write_file};
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use figures::{Against, Report};
 use lodray::format::Scene;
-use lodray::method::{Method, lod};
+use lodray::method::{Method, lod, packet};
 use lodray::paths::{Film, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, light_count, picture_error};
 use lodray::picture::{compare, save_png};
 use lodray::rays::Camera;
@@ -124,6 +124,7 @@ fn overruled(args: &Args) -> anyhow::Result<SceneFile> {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    ensure!(packet::chosen(&args.method.0.knobs) == 1, "--packet: paths are traced one by one");
     let file = overruled(args)?;
     let shown = args.scene.display();
     let models = model_files(&args.scene, &file)?;

@@ -185,19 +185,23 @@ impl<'a> Block<'a> {
     }
 
     /// The corners of triangle `k`, in units.
-    #[inline]
+    ///
+    /// By loops: closures of `array::from_fn` stayed calls, a quarter of the time of a ray.
+    #[inline(always)]
     pub fn triangle(&self, k: usize) -> Triangle {
-        std::array::from_fn(|corner| {
+        let mut triangle = [[0; 3]; 3];
+        for (corner, vertex) in triangle.iter_mut().enumerate() {
             let index = self.get(self.corners + (3 * k + corner) as u32 * self.index_bits, self.index_bits);
             let mut at = HEADER + index * self.vertex_bits;
-            std::array::from_fn(|axis| {
+            for (axis, coordinate) in vertex.iter_mut().enumerate() {
                 let width = self.widths[axis];
                 // Nothing is read where nothing is stored: it may be the end.
                 let stored = if width == 0 { 0 } else { self.get(at, width) };
                 at += width;
-                self.anchor[axis].wrapping_add((stored << self.zeros) as i32)
-            })
-        })
+                *coordinate = self.anchor[axis].wrapping_add((stored << self.zeros) as i32);
+            }
+        }
+        triangle
     }
 }
 
