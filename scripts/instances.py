@@ -4,6 +4,7 @@ Of each method it takes the coarsest setting whose error is no larger; errors ar
 """
 
 import argparse
+import re
 from pathlib import Path
 
 from keep import kept
@@ -62,18 +63,26 @@ def rows_of(args, scene, size):
             yield [scene, size, f"{error:g}", method, setting, f"{run['most']:.3f}", number(run["cycles"]), over("cycles"), over("energy"), over("lines")]
 
 
+def frame(text):
+    """A scene and a size, of SCENE:SIZE."""
+    scene, _, size = text.partition(":")
+    if not (ROOT / "scenes" / f"{scene}.toml").exists() or not re.fullmatch(r"[1-9]\d*x[1-9]\d*", size):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a scene of the folder scenes and a size, as street:640x360")
+    return scene, size
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "instances", help="folder of what is kept")
     parser.add_argument("--machine", default="haydel2023")
-    parser.add_argument("--frames", nargs="+", default=FRAMES, help="SCENE:SIZE, scenes of the folder scenes")
+    parser.add_argument("--frames", nargs="+", type=frame, default=[frame(text) for text in FRAMES], help="SCENE:SIZE, scenes of the folder scenes")
     parser.add_argument("--all", action="store_true", help="what took too long for the document too")
     parser.add_argument("--print", action="store_true", help="print the table, and leave the document alone")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     head = ["scene", "size", "error at most, pixels", "method", "setting", "99 of 100 below", "cycles", "time over ours", "energy", "DRAM lines"]
-    rows = [row for frame in args.frames for row in rows_of(args, *frame.split(":", maxsplit=1))]
+    rows = [row for scene, size in args.frames for row in rows_of(args, scene, size)]
     text = table(head, rows, 5)
     if args.print:
         print(text)

@@ -38,7 +38,8 @@ const MAGIC: u64 = 6;
 const OPAQUE: u64 = 1;
 const BIAS: u32 = 127;
 
-/// How a triangle goes on: with three vertices of its own; over the second or the third edge of the one before; over the edge of the one before that which this one did not take.
+/// How a triangle goes on, the specification's control values: with three vertices of its own; over the second or the third edge of the one before; over the edge of the one before
+/// that which this one did not take.
 const RESTART: u8 = 0;
 const EDGE1: u8 = 1;
 const EDGE2: u8 = 2;
