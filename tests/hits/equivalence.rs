@@ -139,7 +139,7 @@ fn camera_rays(scene: &Scene, side: u32) -> Vec<Ray> {
 
 #[test]
 fn random_balls_and_terrains() {
-    let (mut hits, count) = (0, if is_nightly() { 750 } else { 500 });
+    let (mut hits, count) = (0, if is_nightly() { 750 } else { 300 });
     for seed in 0..12u64 {
         let levels = seed as u32 % 5;
         let roughness = [0.05, 0.4, 1.5][seed as usize % 3];
@@ -151,24 +151,25 @@ fn random_balls_and_terrains() {
         }
     }
     println!("{hits} hits compared");
-    assert!(hits > 10_000, "only {hits} hits");
+    assert!(hits > 20 * count, "only {hits} hits");
 }
 
 #[test]
 fn coarser_grids() {
+    let count = if is_nightly() { 2_000 } else { 500 };
     for (zeros, levels, form) in
         [(1, 4, VertexForm::Exact), (4, 3, VertexForm::Compact), (7, 5, VertexForm::Compact), (12, 3, VertexForm::Exact)]
     {
         let h = with_vertices(form, with_zeros(zeros, terrain(3, levels, 0.3, u64::from(zeros))));
-        let cut = rays(&h, 2_000, 5).into_iter().map(|ray| coarsened(&ray, [zeros, zeros]));
-        assert!(compare(&h, false, cut) > 500, "{zeros} zeros");
+        let cut = rays(&h, count, 5).into_iter().map(|ray| coarsened(&ray, [zeros, zeros]));
+        assert!(compare(&h, false, cut) > count / 4, "{zeros} zeros");
     }
 }
 
 #[test]
 fn deep_trees() {
     // The golden traverser takes up to a tenth of a second for a ray here.
-    let count = if is_nightly() { 750 } else { 60 };
+    let count = if is_nightly() { 750 } else { 30 };
     let each = |levels: u32, form| {
         let (base, triangles) = octahedron();
         let h = model(levels, &base, triangles[..2].to_vec(), |p, level| {
@@ -178,7 +179,10 @@ fn deep_trees() {
         let hits = compare(&with_vertices(form, h.clone()), levels < 10, rays(&h, count, u64::from(levels)));
         assert!(hits > count / 5, "N = {levels}, {form:?}: only {hits} hits");
     };
-    [7, 8, 10].into_par_iter().for_each(|levels| VertexForm::ALL.into_par_iter().for_each(|form| each(levels, form)));
+    // Each depth and each form occurs; `scripts/nightly` takes all pairs.
+    [7, 8, 10].into_par_iter().zip(VertexForm::ALL).for_each(|(levels, own)| {
+        VertexForm::ALL.into_par_iter().filter(|&form| is_nightly() || form == own).for_each(|form| each(levels, form));
+    });
 }
 
 #[test]

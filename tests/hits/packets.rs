@@ -49,7 +49,7 @@ fn packet(h: &Hierarchy, rng: &mut Rng, lanes: usize) -> Vec<Ray> {
 
 #[test]
 fn rays_of_packets_hit_what_the_golden_traverser_hits() {
-    let rays = number(20_000);
+    let rays = number(10_000);
     let models = models();
     for (name, h, _) in &models {
         for form in VertexForm::ALL {

@@ -1,6 +1,6 @@
 //! Total bounds make delta a promise (docs/error-bound.md): every point that is seen is near the point of the full-resolution surface that it stands for.
 //!
-//! `LODRAY_RAYS` asks for that many rays over all models (default 400,000), `LODRAY_SEED` for another seed, `LODRAY_MODEL` for the models with this in their names alone.
+//! `LODRAY_RAYS` asks for that many rays over all models (default 200,000), `LODRAY_SEED` for another seed, `LODRAY_MODEL` for the models with this in their names alone.
 
 use lodray::format::Scene;
 use lodray::golden::naive_bounds;
@@ -209,7 +209,7 @@ fn models(seed: u64) -> Vec<(String, Make)> {
 
 #[test]
 fn what_is_seen_is_within_one_and_a_half_tolerances() {
-    let (rays, seed) = (number("LODRAY_RAYS", 400_000), number("LODRAY_SEED", 1));
+    let (rays, seed) = (number("LODRAY_RAYS", 200_000), number("LODRAY_SEED", 1));
     let models = models(seed);
     let each = rays / models.len() as u64;
     let mut all = Seen::default();
@@ -242,7 +242,7 @@ fn what_is_seen_is_within_one_and_a_half_tolerances() {
 /// A packet has the most detail that any of its rays asks for: each keeps its own promise, whatever rays go with it.
 #[test]
 fn rays_of_packets_see_within_their_own_tolerances() {
-    let rays = number("LODRAY_RAYS", 400_000) / 4;
+    let rays = number("LODRAY_RAYS", 200_000) / 4;
     let models = models(2);
     let each = rays / models.len() as u64;
     let mut all = Seen::default();

@@ -13,7 +13,7 @@ use lodray_test_support::models::{ball, build, build_with, model, octahedron, sc
 fn total() -> u64 {
     match std::env::var("LODRAY_RAYS") {
         Ok(text) => text.parse().expect("LODRAY_RAYS is a number"),
-        Err(_) => 2_000_000,
+        Err(_) => 700_000,
     }
 }
 

@@ -95,7 +95,7 @@ fn whatever_is_chosen_has_the_borders_of_the_mesh() {
         let coarsest = Cut::new(&graph, &Rule { error: Some(f64::INFINITY), size: None, outside: 1.0 }, &[Eye::NOWHERE]);
         assert!(coarsest.clusters.iter().all(|&own| graph.groups[graph.clusters[own as usize].group as usize].is_last()));
         assert_eq!(of == Kinds::Sphere, exact.is_empty());
-        for _ in 0..if std::env::var_os("LODRAY_NIGHTLY").is_some() { 170 } else { 50 } {
+        for _ in 0..if std::env::var_os("LODRAY_NIGHTLY").is_some() { 170 } else { 20 } {
             let (rule, eyes) = any_choice(&mut random, &graph);
             let cut = Cut::new(&graph, &rule, &eyes);
             let triangles: usize = chosen(&graph, &cut).count();
@@ -113,7 +113,7 @@ fn whatever_is_chosen_has_the_borders_of_the_mesh() {
         }
     }
     println!("{mixed} mixed choices, {fewest} triangles at least");
-    assert!(mixed > 100 && fewest < 1000, "{mixed} mixed choices, {fewest} triangles at least");
+    assert!(mixed > 40 && fewest < 1000, "{mixed} mixed choices, {fewest} triangles at least");
 }
 
 #[test]

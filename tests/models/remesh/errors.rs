@@ -111,13 +111,23 @@ fn flips_are_those_that_somebody_else_counts() {
     let (_, original) = thin::shapes().into_iter().find(|s| s.0 == "horn").unwrap();
     let (surface, report) = run(&original, 2, 60);
     let old: Vec<Corners> = original.triangles.iter().map(|t| t.map(|v| original.positions[v as usize])).collect();
+    // A sphere around each: what lies further than the nearest so far is not looked at.
+    let middle = |t: &Corners| -> [f64; 3] { std::array::from_fn(|k| t.iter().map(|p| p[k]).sum::<f64>() / 3.0) };
+    let apart = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+    let sphere = |t: &Corners| (middle(t), t.iter().map(|&p| apart(p, middle(t))).fold(0.0, f64::max) * (1.0 + 1e-9));
+    let spheres: Vec<([f64; 3], f64)> = old.iter().map(sphere).collect();
     let corners = |t: usize, n: u32| lattice::node(2, 2, n).map(|p| surface.tree(t)[lattice::index(2, p)]);
     let mut flips = 0;
     for triangle in (0..surface.triangles.len()).flat_map(|t| (0..16).map(move |n| corners(t, n))) {
-        let middle = std::array::from_fn(|k| triangle.iter().map(|p| p[k]).sum::<f64>() / 3.0);
-        let far: Vec<f64> = old.iter().map(|t| distance_to_triangle(middle, t)).collect();
-        let least = far.iter().copied().fold(f64::INFINITY, f64::min) * (1.0 + 1e-6);
-        let faces = old.iter().zip(&far).any(|(&t, &far)| far <= least && dot(normal(t), normal(triangle)) >= 0.0);
+        let (here, mut least, mut near) = (middle(&triangle), f64::INFINITY, Vec::new());
+        for (t, &(centre, radius)) in old.iter().zip(&spheres) {
+            if apart(here, centre) - radius <= least * (1.0 + 1e-6) {
+                let far = distance_to_triangle(here, t);
+                least = least.min(far);
+                near.push((*t, far));
+            }
+        }
+        let faces = near.iter().any(|&(t, far)| far <= least * (1.0 + 1e-6) && dot(normal(t), normal(triangle)) >= 0.0);
         flips += u64::from(!faces);
     }
     assert_eq!(report.flipped_triangles, flips);
