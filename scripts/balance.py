@@ -14,6 +14,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
+from options import add_program
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -144,7 +145,7 @@ def turn_rows(args, machine):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
+    add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "balance", help="folder of what is kept")
     parser.add_argument("--size", default="512x512")
     parser.add_argument("--machines", nargs="+", default=["haydel2023", "turing2018"])

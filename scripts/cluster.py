@@ -1,4 +1,4 @@
-"""Clusters (`cluster`, `cluster-paper`) beside ours, discrete levels and BVHs, with the work before their frames charged: bytes and seconds of graphs (`cargo bench --bench cluster`), the work before frames (`lodray simulate`), and cost at equal error (`lodray error-time`), on haydel2023 with compute free.
+"""Clusters (`cluster`, `cluster-paper`): bytes and seconds of graphs (`cargo bench --bench cluster`), and the work before frames (`lodray simulate`, haydel2023, compute free). What they cost at equal error: scripts/who-wins.
 
 Writes tables between the marks of docs/baselines.md, and of docs/claims.md and its template.
 """
@@ -7,19 +7,14 @@ import argparse
 import json
 import os
 import re
-import statistics
 import subprocess
-import tempfile
 from pathlib import Path
 
 from markdown import among, number, put, table
+from options import add_program
 
 ROOT = Path(__file__).resolve().parent.parent
 CLUSTERS = ["cluster", "cluster-paper"]
-OTHERS = ["discrete", "bvh6", "input-bvh6"]
-LEVELS = {"surface": [0.25, 0.5, 1, 2], "flip": [0.01, 0.05]}
-ERRORS = {"surface": lambda point: point["geometry"]["surface"]["percentile_99"], "flip": lambda point: point["picture"]["flip"]["mean"]}
-NAMES = {"surface": "pixels off (99 of 100)", "flip": "FLIP"}
 # Frames that the paper has times of: million triangles in a frame, and milliseconds of selection, of unpacking, and of the tree over all.
 PAPER = [("Thai", 16, 1.7, 2.4, 1.6), ("Rungholt", 40, 0.9, 5.9, 2.3), ("Landscape", 21, 1.2, 2.6, 2.0)]
 # Degrees by which a camera turns to its next frame: it stands, moves, jumps.
@@ -33,7 +28,7 @@ class Runs:
 
     def __init__(self, args):
         self.args = args
-        self.program = Path(args.program).resolve()
+        self.program = args.program
         self.out = Path(args.out)
         self.out.mkdir(parents=True, exist_ok=True)
 
@@ -56,24 +51,6 @@ class Runs:
         """The lines of the benchmark, scene by scene."""
         run = lambda: subprocess.run(["cargo", "bench", "--quiet", "--bench", "cluster", "--", *(scene.resolve() for scene in scenes)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT, env=os.environ).stdout
         return [json.loads(line) for line in self.kept("bench.jsonl", run).splitlines()]
-
-    def error_time(self, scene):
-        """The figures of a scene: frames of a camera that turns, the first of which finds nothing there."""
-        folder = self.out / f"error-time-{scene.stem}"
-        if not (folder / "error-time.json").exists():
-            said = json.loads(subprocess.run([self.program, "info", scene, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout)
-            has_mesh = "file" in (said.get("origin") or {})
-            methods = ["lod", *CLUSTERS, *(method for method in OTHERS if has_mesh or not method.startswith("input"))]
-            quoted = "[" + ", ".join(f'"{method}"' for method in methods) + "]"
-            with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=self.out, delete=False) as jobs:
-                jobs.write(f'size = "{self.args.size}"\nmethods = {quoted}\ncompute = ["free"]\n')
-                jobs.write(f'[[scene]]\nfile = "{scene.resolve()}"\ndistances = [{", ".join(self.args.distances)}]\n[[machine]]\nname = "haydel2023"\n')
-            try:
-                more = ["--samples", "1", "--most-samples", "0", "--no-host", "--error-size", "192", "--frames", "4", "--turn", self.args.turn]
-                subprocess.run([self.program, "--quiet", "error-time", "--jobs", jobs.name, "-o", folder, *more], check=True, stdout=subprocess.DEVNULL)
-            finally:
-                Path(jobs.name).unlink()
-        return json.loads((folder / "error-time.json").read_text(encoding="utf-8"))
 
 
 def graphs(lines):
@@ -113,35 +90,6 @@ def works(runs, scenes):
     return table(head, rows, 3), rates
 
 
-def equal(runs, scenes, kind):
-    """Costs over ours where errors are equal: of each method the fastest setting that is no worse, in a frame that finds nothing there and in one of a camera that moves."""
-    rows, ratios = [], {}
-    for scene in scenes:
-        document = runs.error_time(scene)
-        for view, of in enumerate(document["views"]):
-            points = [point for point in document["points"] if point["view"] == view]
-            for level in LEVELS[kind]:
-
-                def best(method, of_cost):
-                    return min((point["costs"][0] for point in points if point["method"] == method and ERRORS[kind](point) <= level), key=of_cost, default=None)
-
-                cold, warm, energy = lambda cost: cost["milliseconds"], lambda cost: cost["warm"]["milliseconds"], lambda cost: cost["energy"]["total"]
-                row = [scene.stem, f"{of['distance']:g}", f"{level:g}"]
-                for method in CLUSTERS + OTHERS:
-                    known = any(point["method"] == method for point in points)
-                    for cost in (cold, energy, warm):
-                        own, other = best("lod", cost), best(method, cost)
-                        if own is None or other is None:
-                            row.append("" if not known else "ours cannot" if own is None else "cannot")
-                            continue
-                        ratios.setdefault((level, method, ("time", "energy", "moving")[(cold, energy, warm).index(cost)]), []).append(cost(other) / cost(own))
-                        row.append(f"{ratios[level, method, ('time', 'energy', 'moving')[(cold, energy, warm).index(cost)]][-1]:.2f}")
-                rows.append(row)
-    head = ["scene", "radii", NAMES[kind]] + [f"{name}{what}" for name in (f"`{method}`" for method in CLUSTERS + OTHERS) for what in (" time", " energy", " moving")]
-    summary = [[f"{level:g}", f"`{method}`"] + [f"{statistics.median(ratios[level, method, what]):.2f} ({among(ratios[level, method, what])})" if (level, method, what) in ratios else "cannot" for what in ("time", "energy", "moving")] for level in LEVELS[kind] for method in CLUSTERS + OTHERS]
-    return table([NAMES[kind], "method over ours, median (least to most)", "time", "energy", "time, a camera that moves"], summary, 2) + "\n\n" + table(head, rows, 1)
-
-
 def ledger(lines, rates):
     """The paper's figures beside ours."""
     of = lambda method: [line for line in lines if line["of"] == method]
@@ -163,10 +111,9 @@ def ledger(lines, rates):
 def main():
     """Runs all of it, and writes the tables."""
     parser = argparse.ArgumentParser(prog="scripts/cluster", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="1024x1024", help="size of the frames (default 1024x1024)")
     parser.add_argument("--distances", type=lambda text: text.split(","), default=["1.5", "4", "16"], help="distances of the eye in radii, with commas (default 1.5,4,16)")
-    parser.add_argument("--turn", default="3", help="degrees between frames of a camera that moves (default 3)")
     parser.add_argument("--out", default="target/cluster", help="folder in which what was run is kept; a run that is started again goes on with it (default target/cluster)")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the documents alone")
     parser.add_argument("scene", nargs="+", type=Path, help="scene files (generate, build)")
@@ -174,7 +121,7 @@ def main():
     runs = Runs(args)
     lines = runs.bench(args.scene)
     before, rates = works(runs, args.scene)
-    texts = {"graphs": graphs(lines), "frames": before, "errors": equal(runs, args.scene, "surface") + "\n\n" + equal(runs, args.scene, "flip")}
+    texts = {"graphs": graphs(lines), "frames": before}
     rows = ledger(lines, rates)
     if args.print:
         print("\n\n".join([*texts.values(), rows]))

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
+from options import add_program
 
 ROOT = Path(__file__).resolve().parent.parent
 LEAVES = [("block", 16), ("dgf", 4), ("dgf", 2)]
@@ -93,7 +94,7 @@ def placed(args):
             jobs = args.out / f"placed-{scene.stem}.toml"
             jobs.write_text(f'size = "{args.size}"\nmethods = ["discrete", "cluster"]\ncompute = ["free"]\n[[scene]]\nfile = "{scene.name}"\ndistances = [8]\n[[machine]]\nname = "{args.machine}"\n', encoding="utf-8")
             size = args.size.split("x", maxsplit=1)[0]
-            subprocess.run([Path(args.program).resolve(), "--quiet", "error-time", "--jobs", jobs.name, "-o", folder.name, "--samples", "1", "--most-samples", "0", "--no-host", "--error-size", size], check=True, cwd=args.out, stdout=subprocess.DEVNULL)
+            subprocess.run([args.program, "--quiet", "error-time", "--jobs", jobs.name, "-o", folder.name, "--samples", "1", "--most-samples", "0", "--no-host", "--error-size", size], check=True, cwd=args.out, stdout=subprocess.DEVNULL)
         document = json.loads((folder / "error-time.json").read_text(encoding="utf-8"))
         base = document["scenes"][0]["base_triangles"]
         off = lambda point: point["geometry"]["surface"]["percentile_99"]
@@ -111,7 +112,7 @@ def placed(args):
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/dense", description=__doc__)
-    parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
+    add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "dense", help="folder of what is kept")
     parser.add_argument("--size", default="512x512")
     parser.add_argument("--machine", default="haydel2023")

@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 from markdown import among, number, put, table
+from options import add_program
 
 ROOT = Path(__file__).resolve().parent.parent
 LEVELS = [1, 2, 3, 4]
@@ -50,7 +51,7 @@ class Runs:
 
     def __init__(self, args):
         self.args = args
-        self.program = Path(args.program).resolve()
+        self.program = args.program
         self.out = Path(args.out)
         self.out.mkdir(parents=True, exist_ok=True)
 
@@ -252,7 +253,7 @@ def equal_error(runs, scenes):
 def main():
     """Runs all of it, and writes the tables."""
     parser = argparse.ArgumentParser(prog="scripts/grid", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512)")
     parser.add_argument("--distances", type=lambda text: text.split(","), default=["1.5", "4", "16"], help="distances of the eye in radii, with commas (default 1.5,4,16)")
     parser.add_argument("--out", default="target/grid", help="folder in which what was run is kept; a run that is started again goes on with it (default target/grid)")

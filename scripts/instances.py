@@ -9,6 +9,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
+from options import add_program
 
 ROOT = Path(__file__).resolve().parent.parent
 # Scenes and the sizes of their frames. In the forest a ray asks for hundreds of lines, so its frames are small.
@@ -73,7 +74,7 @@ def frame(text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
+    add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "instances", help="folder of what is kept")
     parser.add_argument("--machine", default="haydel2023")
     parser.add_argument("--frames", nargs="+", type=frame, default=[frame(text) for text in FRAMES], help="SCENE:SIZE, scenes of the folder scenes")

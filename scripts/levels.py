@@ -7,17 +7,19 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from options import add_program
+
 DISTANCES = ["1.5", "4", "16"]
 
 
 def main():
     """Prints the table."""
     parser = argparse.ArgumentParser(prog="scripts/levels", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512)")
     parser.add_argument("mesh", nargs="+", help="mesh files")
     args = parser.parse_args()
-    program = Path(args.program).resolve()
+    program = args.program
 
     def run(*words):
         return json.loads(subprocess.run([program, *words, "--json"], check=True, capture_output=True, text=True).stdout)

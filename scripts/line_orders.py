@@ -10,6 +10,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from options import add_program
+
 ORDERS = ["tree", "veb", "coarse", "blocks", "own"]
 TERRAINS = ["0.45", "0.55", "0.6"]
 DISTANCES = ["0.8", "1.6", "3", "6", "12"]
@@ -18,7 +20,7 @@ DISTANCES = ["0.8", "1.6", "3", "6", "12"]
 def main():
     """Prints the table."""
     parser = argparse.ArgumentParser(prog="scripts/line-orders", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="1024x1024", help="size of the frames (default 1024x1024)")
     parser.add_argument("--method", default="lod", help="method whose lines are ordered (default lod)")
     parser.add_argument("--knob", default="line-layout", help="option of simulate that is varied (default line-layout)")
@@ -27,7 +29,7 @@ def main():
     parser.add_argument("--delta", default="1", help="quality (default 1); with inf nothing is morphed")
     parser.add_argument("--scene", action="append", default=[], help="scene file, seen from 1.5, 4 and 16 radii; may be repeated")
     args = parser.parse_args()
-    program, orders = Path(args.program).resolve(), args.orders.split(",")
+    program, orders = args.program, args.orders.split(",")
 
     def simulate(scene, distance, order):
         command = [program, "simulate", scene, "--machine", "haydel2023", "--compute", args.compute, "--distance", distance, "--delta", args.delta]

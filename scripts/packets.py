@@ -9,6 +9,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
+from options import add_program
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -91,7 +92,7 @@ def figure_13(args):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
+    add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "packets", help="folder of what is kept")
     parser.add_argument("--scene", type=Path, help="scene file (default: a terrain of 8.4 M triangles, generated)")
     parser.add_argument("--size", default="512x512")

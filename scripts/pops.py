@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 from markdown import put, table
+from options import add_program
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -35,7 +36,7 @@ def flown(args, method, frames):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=str(ROOT / "target" / "release" / "lodray"))
+    add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "pops", help="folder of what is kept")
     parser.add_argument("--scene", type=Path, help="scene file (default: a terrain of 0.5 M triangles, generated)")
     parser.add_argument("--size", default="256x256")

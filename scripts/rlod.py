@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 from markdown import among, number, put, table
+from options import add_program
 
 ROOT = Path(__file__).resolve().parent.parent
 # Pixels of error of the paper's figure 9, and beyond.
@@ -155,14 +156,13 @@ def ledger(lines, args):
 def main():
     """Runs all of it, and writes the tables."""
     parser = argparse.ArgumentParser(prog="scripts/rlod", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="1024x1024", help="size of the simulated frames (default 1024x1024)")
     parser.add_argument("--out", type=Path, default=Path("target/rlod"), help="folder in which what was run is kept; a run that is started again goes on with it (default target/rlod)")
     parser.add_argument("--large", type=Path, help="a scene that is built and traced, but not swept")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the documents alone")
     parser.add_argument("scene", nargs="+", type=Path, help="scene files (generate, build)")
     args = parser.parse_args()
-    args.program = Path(args.program).resolve()
     args.out.mkdir(parents=True, exist_ok=True)
     swept = bench(args, args.scene, "swept", LODRAY_RLOD_SWEEP="1")
     large = bench(args, [args.large], "large") if args.large else []

@@ -10,6 +10,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from options import add_program
+
 FORMS = ["compact", "short"]
 TERRAINS = ["0.45", "0.6"]
 DISTANCES = ["1.5", "4"]
@@ -18,11 +20,11 @@ DISTANCES = ["1.5", "4"]
 def main():
     """Prints the table."""
     parser = argparse.ArgumentParser(prog="scripts/short-splits", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512)")
     parser.add_argument("mesh", nargs="*", help="mesh files")
     args = parser.parse_args()
-    program = Path(args.program).resolve()
+    program = args.program
 
     def run(*words):
         return json.loads(subprocess.run([program, *words, "--json"], check=True, capture_output=True, text=True).stdout)

@@ -10,6 +10,8 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from options import add_program
+
 TERRAINS = ["0.45", "0.55", "0.6"]
 FAR = ["0.8", "1.6", "3", "6", "12"]
 NEAR = ["1.5", "4", "8", "16"]
@@ -21,11 +23,11 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/steps", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("before", type=Path, help="the program of before: lodray of commit daf6758, built")
     parser.add_argument("models", type=Path, help="folder of models with stanford-bunny.obj, igea.ply and spot.obj")
-    parser.add_argument("--program", type=Path, default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="1024x1024", help="size of the frames (default 1024x1024)")
     parser.add_argument("--compute", default="free", help="how compute is simulated: free, cores or units (default free)")
     args = parser.parse_args()
-    programs = [args.before.resolve(), args.program.resolve()]
+    programs = [args.before.resolve(), args.program]
 
     def simulate(program, scene, distance, *more):
         command = [program, "simulate", scene, "--machine", "haydel2023", "--compute", args.compute, "--distance", distance, "--size", args.size, *more, "--json"]

@@ -1,19 +1,30 @@
 """Who wins where: ours, discrete levels, BVHs, grids, clusters and R-LODs over the same scenes, each at every setting of its own sweep, and at equal error who is cheapest (`lodray error-time`, compute free).
 
-Writes tables between the marks of docs/who-wins.md. Each scene, distance and machine is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same.
+Writes tables between the marks of docs/who-wins.md, and all cells to docs/who-wins.csv. Each view of a scene is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same. A run that was stopped goes on, and one of more distances or scenes measures what is new.
 """
 
 import argparse
+import csv
 import json
+import math
+import re
 import statistics
 import subprocess
-import tempfile
 from pathlib import Path
 
-from markdown import among, number, put, table
+from markdown import among, put, table
+from options import add_program
+from who_bounces import bounces
 
 ROOT = Path(__file__).resolve().parent.parent
-METHODS = ["lod", "discrete", "bvh6", "input-bvh6", "grid", "cluster", "cluster-paper", "rlod"]
+METHODS = ["lod", "discrete", "bvh", "bvh6", "input-bvh", "input-bvh6", "grid", "cluster", "cluster-paper", "rlod"]
+# Half octaves for clusters and R-LODs, where their own sweeps have octaves: from one of those to the next a frame of clusters takes up to 4.9 times as long, so they would lose by steps that are too large. Ours keeps octaves of delta.
+FINER = {
+    "error": [16, 8, 4, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625, 0.03, 0.015],
+    "pixels": [256, 180, 128, 90, 64, 45, 32, 23, 16, 11, 8, 5.6, 4, 2.8, 2, 1.4, 1],
+}
+# By which knob each is coarse or fine; BVHs have none.
+COARSENESS = {"lod": "delta", "discrete": "level", "grid": "cap", "cluster": "error", "cluster-paper": "pixels", "rlod": "pixels"}
 # What errors are, and how large they may be.
 ERRORS = {
     "surface": ("pixels off (99 of 100)", [0.25, 0.5, 1, 2], lambda point: point["geometry"]["surface"]["percentile_99"]),
@@ -26,6 +37,55 @@ COSTS = {
     "time, moving": lambda cost: cost["warm"]["milliseconds"],
     "energy, moving": lambda cost: cost["warm"]["energy"],
 }
+
+
+# Scenes that are made here: words of `lodray generate`.
+TERRAIN = ["terrain", "--base", "128", "--levels", "6"]
+SCENES = {
+    "terrain": TERRAIN,
+    "terrain, smooth": [*TERRAIN, "--roughness", "0.3"],
+    "terrain, rough": [*TERRAIN, "--roughness", "0.7"],
+    "terrain, turned": TERRAIN,
+    "cloth": ["cloth", "--base", "2048", "--levels", "4"],
+    "wall": ["wall", "--levels", "2"],
+    "street": ["street", "--levels", "4"],
+    "street, along it": ["street", "--levels", "4"],
+    "plain": ["terrain", "--base", "288", "--levels", "6", "--width", "64", "--roughness", "0.5"],
+}
+# Views from within a scene, in place of distances: from the end of the street, bodies from the height of the picture down to some pixels; and three finest steps above the ground, from an edge to the horizon at the other.
+WITHIN = {"street, along it": ("[0, 0, -1]", "[[0, 0.02, 1.02]]"), "plain": ("[0, -0.05, 0]", "[[0, 0.27, 31]]")}
+# Right triangles along the axes become equilateral ones, turned by 27 degrees about y: along the axes our boxes are at their worst and those of others at their best.
+SHEAR, TURN = (0.5, math.sqrt(0.75)), math.radians(27)
+
+
+def turned(args, scene, to):
+    """The scene with its vertices sheared and turned."""
+    mesh, moved = to.with_suffix(".obj"), to.with_suffix(".moved.obj")
+    subprocess.run([args.program, "--quiet", "export", scene, "-o", mesh], check=True, stdout=subprocess.DEVNULL)
+    cos, sin = math.cos(TURN), math.sin(TURN)
+    with mesh.open(encoding="utf-8") as lines, moved.open("w", encoding="utf-8") as out:
+        for line in lines:
+            if line.startswith("v "):
+                x, y, z = map(float, line.split()[1:4])
+                x, z = x + SHEAR[0] * z, SHEAR[1] * z
+                line = f"v {cos * x + sin * z} {y} {cos * z - sin * x}\n"
+            if not line.startswith("vn "):
+                out.write(re.sub(r"//\d+", "", line))
+    subprocess.run([args.program, "--quiet", "refit", scene, moved, "-o", to], check=True, stdout=subprocess.DEVNULL)
+    mesh.unlink()
+    moved.unlink()
+
+
+def made(args, name):
+    """The file of a scene of the list, made if it is not there."""
+    to = args.out / "scenes" / f"{name.replace(', ', '-').replace(' ', '-')}.lod"
+    if not to.exists():
+        to.parent.mkdir(exist_ok=True)
+        if name == "terrain, turned":
+            turned(args, made(args, "terrain"), to)
+        else:
+            subprocess.run([args.program, "--quiet", "generate", *SCENES[name], "-o", to], check=True, stdout=subprocess.DEVNULL)
+    return to
 
 
 def triangles(program, scene):
@@ -44,46 +104,63 @@ def shard_of(pieces, count):
     return of
 
 
-def measured(args, piece):
-    """A piece: run now, or kept from before."""
-    scene, distance, machine = piece
-    folder = args.out / f"{Path(scene).stem}-{distance}-{machine}"
+def measured(args, name, place, file):
+    """A piece, a view of a scene on all machines: run now, or kept from before. Where its eye is, and by machine the points of all methods, each with its cost there."""
+    folder = args.out / f"{file.stem}-{place}-{args.size}-{'-'.join(args.machines)}"
     if not (folder / "error-time.json").exists():
-        _, has_mesh = triangles(args.program, scene)
+        _, has_mesh = triangles(args.program, file)
         methods = [method for method in METHODS if has_mesh or not method.startswith("input")]
-        with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=args.out, delete=False) as jobs:
-            quoted = ", ".join(f'"{method}"' for method in methods)
-            jobs.write(f'size = "{args.size}"\nmethods = [{quoted}]\ncompute = ["free"]\n')
-            jobs.write(f'[[scene]]\nfile = "{Path(scene).resolve()}"\ndistances = [{distance}]\n[[machine]]\nname = "{machine}"\n')
-        try:
-            more = ["--samples", "1", "--most-samples", "0", "--no-host", "--error-size", "192", "--frames", "4", "--turn", "3"]
-            subprocess.run([args.program, "--quiet", "error-time", "--jobs", jobs.name, "-o", folder, *more], check=True, stdout=subprocess.DEVNULL)
-        finally:
-            Path(jobs.name).unlink()
-    return json.loads((folder / "error-time.json").read_text(encoding="utf-8"))
+        quoted = ", ".join(f'"{method}"' for method in methods)
+        views = "target = {}\neyes = {}\n".format(*WITHIN[name]) if name in WITHIN else f"distances = [{place}]\n"
+        text = f'size = "{args.size}"\nmethods = [{quoted}]\ncompute = ["free"]\n[[scene]]\nfile = "{file.resolve()}"\n{views}' + "".join(f'[[machine]]\nname = "{machine}"\n' for machine in args.machines)
+        # Always of the same name: a run that goes on is one of the same jobs.
+        jobs = Path(f"{folder}.toml")
+        jobs.write_text(text, encoding="utf-8")
+        # One normal for a hit of each: clusters know nothing of the facets that a triangle stands for.
+        more = ["--samples", "1", "--most-samples", "0", "--no-host", "--error-size", "192", "--frames", "2", "--turn", "3", "--shading", "full", *(word for knob, values in FINER.items() for word in ("--values", f"{knob}={','.join(map(str, values))}"))]
+        subprocess.run([args.program, "--quiet", "error-time", "--jobs", jobs, "-o", folder, *more], check=True, stdout=subprocess.DEVNULL)
+        jobs.unlink()
+    document = json.loads((folder / "error-time.json").read_text(encoding="utf-8"))
+    own = lambda point, index: point | {"cost": next(cost for cost in point["costs"] if cost["machine"] == index)}
+    return document["views"][0]["eye"], {machine: [own(point, index) for point in document["points"]] for index, machine in enumerate(args.machines)}
 
 
-def cheapest(document, kind, level, cost):
-    """Of each method its least cost among settings that are no worse than `level`; none if it has no such setting."""
+def best(points, kind, level, cost):
+    """Of each method its cheapest setting among those that are no worse than `level`; none if it has no such setting."""
     error = ERRORS[kind][2]
-    best = {}
-    for point in document["points"]:
-        best.setdefault(point["method"], None)
-        if error(point) <= level:
-            own = cost(point["costs"][0])
-            if best[point["method"]] is None or own < best[point["method"]]:
-                best[point["method"]] = own
-    return best
+    of = {}
+    for point in points:
+        of.setdefault(point["method"], None)
+        if error(point) <= level and (of[point["method"]] is None or cost(point["cost"]) < cost(of[point["method"]]["cost"])):
+            of[point["method"]] = point
+    return of
 
 
-def winners(documents, kind, what):
+def cheapest(points, kind, level, cost):
+    """Of each method its least cost among settings that are no worse than `level`; none if it has no such setting."""
+    return {method: point and cost(point["cost"]) for method, point in best(points, kind, level, cost).items()}
+
+
+def cells(views):
+    """All of it, as lines of CSV: in each view and at each error each method's fastest setting, or that it cannot."""
+    lines = [["scene", "radii", "machine", "error", "at most", "method", "setting", "ms", "uJ", "DRAM lines", "ms, moving", "uJ, moving"]]
+    for view, points in views.items():
+        for kind, (_, levels, _) in ERRORS.items():
+            for level in levels:
+                for method, point in best(points, kind, level, COSTS["time"]).items():
+                    setting = "cannot" if point is None else f"{COARSENESS[method]} {point['knobs'][COARSENESS[method]]}" if method in COARSENESS else ""
+                    lines.append([*view, kind, level, method, setting, *("" if point is None else f"{cost(point['cost']):.6g}" for cost in COSTS.values())])
+    return lines
+
+
+def winners(views, kind, what):
     """The map: who is cheapest in each view and at each error, and by how much before the next; and what ours costs over that."""
     name, levels, _ = ERRORS[kind]
     rows = []
-    for (scene, distance, machine), document in documents.items():
-        row = [Path(scene).stem, distance, machine]
+    for (scene, distance, machine), points in views.items():
+        row = [scene, distance, machine]
         for level in levels:
-            reached = {method: cost for method, cost in cheapest(document, kind, level, COSTS[what]).items() if cost is not None}
+            reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
             if not reached:
                 row += ["nobody", ""]
                 continue
@@ -94,7 +171,7 @@ def winners(documents, kind, what):
     return table(["scene", "radii", "machine"] + [head for level in levels for head in (f"{name} {level:g}", "ours")], rows, 3)
 
 
-def all_over_ours(documents, kind):
+def all_over_ours(views, kind):
     """Medians of each method's costs over ours, least to most, and in how many views it reaches an error that ours reaches."""
     name, levels, _ = ERRORS[kind]
     rows = []
@@ -104,8 +181,8 @@ def all_over_ours(documents, kind):
             for what in COSTS:
                 ratios = []
                 reached = asked = 0
-                for document in documents.values():
-                    best = cheapest(document, kind, level, COSTS[what])
+                for points in views.values():
+                    best = cheapest(points, kind, level, COSTS[what])
                     if method in best and best["lod"] is not None:
                         asked += 1
                         if best[method] is not None:
@@ -116,31 +193,51 @@ def all_over_ours(documents, kind):
     return table([name, "method over ours, median (least to most)", "views reached", *COSTS], rows, 3)
 
 
-def counted(documents):
-    """How often each method is cheapest, over all views and errors."""
-    rows = []
-    for method in METHODS:
-        row = [f"`{method}`"]
-        for what in COSTS:
-            won = of = 0
-            for document in documents.values():
-                for kind, (_, levels, _) in ERRORS.items():
-                    for level in levels:
-                        best = {own: cost for own, cost in cheapest(document, kind, level, COSTS[what]).items() if cost is not None}
-                        if best:
-                            of += 1
-                            won += min(best, key=lambda own: (best[own], METHODS.index(own))) == method
-            row.append(f"{won} of {of}")
-        rows.append(row)
-    return table(["cheapest", *COSTS], rows, 1)
+def wins(views, what):
+    """How often each method is cheapest, over all views and errors, and of how many."""
+    of = dict.fromkeys(METHODS, 0)
+    for points in views.values():
+        for kind, (_, levels, _) in ERRORS.items():
+            for level in levels:
+                reached = {own: cost for own, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
+                if reached:
+                    of[min(reached, key=lambda own: (reached[own], METHODS.index(own)))] += 1
+    return of, sum(of.values())
 
 
-def sizes(documents):
+def counted(views):
+    """How often each method is cheapest."""
+    of = [wins(views, what) for what in COSTS]
+    return table(["cheapest", *COSTS], [[f"`{method}`", *(f"{won[method]} of {total}" for won, total in of)] for method in METHODS], 1)
+
+
+def short(views, size):
+    """What the tables say in a few lines."""
+    scenes, machines = (list(dict.fromkeys(view[k] for view in views)) for k in (0, 2))
+    lines = [f"{len(views) // len(machines)} views of {len(scenes)} scenes on {' and '.join(f'`{machine}`' for machine in machines)}, at six errors each, frames of {size}:", ""]
+    for what in ("time", "energy", "DRAM lines"):
+        of, total = wins(views, what)
+        ranked = sorted((method for method in METHODS if of[method]), key=lambda method: -of[method])
+        lines.append(f"- **{what[0].upper() + what[1:]}**: of {total} cases " + ", ".join(f"`{method}` is cheapest in {of[method]}" if k == 0 else f"`{method}` in {of[method]}" for k, method in enumerate(ranked)) + ".")
+    for level in (0.25, 1):
+        over = []
+        for method in METHODS[1:]:
+            pair = []
+            for what in ("time", "energy"):
+                both = [(of[method], of["lod"]) for of in (cheapest(points, "surface", level, COSTS[what]) for points in views.values()) if of.get(method) and of["lod"]]
+                pair.append(statistics.median(own / ours for own, ours in both) if both else None)
+            if pair[0]:
+                over.append(f"`{method}` {pair[0]:.2f} and {pair[1]:.2f}")
+        lines.append(f"- **At {'a quarter of a pixel' if level < 1 else 'a pixel'}**, in the median of the views that both reach, time and energy over ours: " + ", ".join(over) + ".")
+    return "\n".join(lines)
+
+
+def sizes(views):
     """Bytes a triangle of each method, by scene."""
     scenes = {}
-    for (scene, *_), document in documents.items():
-        own = scenes.setdefault(Path(scene).stem, {})
-        for point in document["points"]:
+    for (scene, *_), points in views.items():
+        own = scenes.setdefault(scene, {})
+        for point in points:
             own[point["method"]] = point["bytes_per_triangle"]
     rows = [[name, *(f"{own[method]:.2f}" if method in own else "" for method in METHODS)] for name, own in scenes.items()]
     return table(["bytes a triangle", *(f"`{method}`" for method in METHODS)], rows, 1)
@@ -149,16 +246,17 @@ def sizes(documents):
 def main():
     """Measures what is not yet there, and writes the tables if all is."""
     parser = argparse.ArgumentParser(prog="scripts/who-wins", description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--program", default="target/release/lodray", help="lodray, built (default target/release/lodray)")
+    add_program(parser)
     parser.add_argument("--size", default="1920x1080", help="size of the frames (default 1920x1080)")
     parser.add_argument("--distances", type=lambda text: text.split(","), default="0.8,1.2,2,4,8,16,32,64".split(","), help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
     parser.add_argument("--machines", type=lambda text: text.split(","), default=["haydel2023", "turing2018"], help="machines, with commas (default haydel2023,turing2018)")
+    parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow are measured too (default 4)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the document alone")
-    parser.add_argument("scene", nargs="+", help="scene files (generate, build)")
+    parser.add_argument("--only", type=lambda text: text.split(";"), default=list(SCENES), help=f"scenes to make, by name, with semicolons: {'; '.join(SCENES)} (default all)")
+    parser.add_argument("scene", nargs="*", type=Path, help="scene files beside those that are made here, of meshes (build)")
     args = parser.parse_args()
-    args.program = Path(args.program).resolve()
     args.out.mkdir(parents=True, exist_ok=True)
     try:
         shard, shards = (int(part) for part in args.shard.split("/"))
@@ -166,24 +264,36 @@ def main():
         parser.error(f"--shard: '{args.shard}' is not K/N")
     if not 1 <= shard <= shards:
         parser.error(f"--shard: '{args.shard}' is no part of N")
-    # Near frames cost most: a frame's rays spread over more triangles.
-    pieces = {}
-    for scene in args.scene:
-        count, _ = triangles(args.program, scene)
-        pieces.update({(scene, distance, machine): count / float(distance) for distance in args.distances for machine in args.machines})
+    for name in args.only:
+        if name not in SCENES:
+            parser.error(f"--only: '{name}' is none of {'; '.join(SCENES)}")
+    for file in args.scene:
+        if not file.exists():
+            parser.error(f"no file {file}")
+    files = {file.stem: file for file in args.scene} | {name: made(args, name) for name in args.only}
+    # One distance after the other. Near frames cost most: a frame's rays spread over more triangles.
+    counts = {name: triangles(args.program, file)[0] for name, file in files.items()}
+    pieces = {(name, place): counts[name] / float(place) for place in args.distances for name in files if name not in WITHIN}
+    pieces |= {(name, "within"): counts[name] for name in files if name in WITHIN}
     of = shard_of(pieces, shards)
-    documents = {piece: measured(args, piece) for piece in pieces if of[piece] == shard}
+    done = {piece: measured(args, *piece, files[piece[0]]) for piece in pieces if of[piece] == shard}
     if shards > 1:
         return
-    texts = {"count": counted(documents), "sizes": sizes(documents)}
+    # By scene, as people read it.
+    views = {(name, place, machine): done[name, place][1][machine] for name in files for place in [*args.distances, "within"] if (name, place) in done for machine in args.machines}
+    texts = {"short": short(views, args.size), "count": counted(views), "sizes": sizes(views)}
     for kind in ERRORS:
-        texts[f"{kind} summary"] = all_over_ours(documents, kind)
+        texts[f"{kind} summary"] = all_over_ours(views, kind)
         for what in ("time", "energy"):
-            texts[f"{kind} {what}"] = winners(documents, kind, what)
-    views = f"{len(documents)} views of {number(len(args.scene))} scenes, {args.size}"
+            texts[f"{kind} {what}"] = winners(views, kind, what)
+    if "haydel2023" in args.machines and args.bounces in args.distances:
+        own = {name: done[name, args.bounces] for name in files if name not in WITHIN}
+        texts["bounces"] = bounces(args, files, {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}, METHODS, ERRORS["surface"][2])
     if args.print:
-        print("\n\n".join([views, *texts.values()]))
+        print("\n\n".join([f"{len(views)} views of {len(files)} scenes, {args.size}", *texts.values()]))
         return
+    with (ROOT / "docs" / "who-wins.csv").open("w", encoding="utf-8", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows(cells(views))
     for name, text in texts.items():
         put(ROOT / "docs" / "who-wins.md", f"<!-- {name} -->", f"<!-- {name} end -->", text)
 
