@@ -23,11 +23,11 @@ OUTLINES = {
 }
 
 
-def styles():
-    """Colour on paper and mark of each method."""
+def styles(dark=False):
+    """Colour, on light or on dark paper, and mark of each method."""
     text = (ROOT / "src" / "report" / "palette.rs").read_text()
-    found = re.findall(r'\("(\w+)", style\(\[(\d+), (\d+), (\d+)\], \[[\d, ]+\], Mark::(\w+)\)\)', text)
-    return {name: (f"#{int(r):02x}{int(g):02x}{int(b):02x}", mark) for name, r, g, b, mark in found}
+    found = re.findall(r'\("([\w-]+)", style\(\[([\d, ]+)\], \[([\d, ]+)\], Mark::(\w+)\)\)', text)
+    return {name: ("#" + "".join(f"{int(part):02x}" for part in colours[dark].split(",")), mark) for name, *colours, mark in found}
 
 
 def span(values):

@@ -15,6 +15,7 @@ from pathlib import Path
 from markdown import among, put, table
 from options import add_program
 from who_bounces import bounces
+from who_map import drawn
 
 ROOT = Path(__file__).resolve().parent.parent
 METHODS = ["lod", "discrete", "bvh", "bvh6", "input-bvh", "input-bvh6", "grid", "cluster", "cluster-paper", "rlod"]
@@ -171,6 +172,21 @@ def winners(views, kind, what):
     return table(["scene", "radii", "machine"] + [head for level in levels for head in (f"{name} {level:g}", "ours")], rows, 3)
 
 
+def maps(views, what, unit):
+    """A picture of the winners for each machine: name, and SVG."""
+    _, levels, _ = ERRORS["surface"]
+    for machine in dict.fromkeys(view[2] for view in views):
+        scenes, places = (list(dict.fromkeys(view[k] for view in views if view[2] == machine)) for k in (0, 1))
+        won = {}
+        for (scene, place, _), points in ((view, points) for view, points in views.items() if view[2] == machine):
+            for level in levels:
+                reached = {method: cost for method, cost in cheapest(points, "surface", level, COSTS[what]).items() if cost is not None}
+                if reached:
+                    first = min(reached, key=lambda method: (reached[method], METHODS.index(method)))
+                    won[scene, place, level] = (first, reached["lod"] / reached[first] if "lod" in reached else None)
+        yield f"who-wins-{what}-{machine}", drawn(f"Least {what} on {machine}, by distance in radii; beside it what ours takes over that ({unit}; -: ours cannot)", scenes, sorted(places, key=lambda place: (place == "within", place != "within" and float(place))), levels, won)
+
+
 def all_over_ours(views, kind):
     """Medians of each method's costs over ours, least to most, and in how many views it reaches an error that ours reaches."""
     name, levels, _ = ERRORS[kind]
@@ -294,6 +310,9 @@ def main():
         return
     with (ROOT / "docs" / "who-wins.csv").open("w", encoding="utf-8", newline="") as out:
         csv.writer(out, lineterminator="\n").writerows(cells(views))
+    for what in ("time", "energy"):
+        for name, picture in maps(views, what, args.size):
+            (ROOT / "docs" / "images" / f"{name}.svg").write_text(picture, encoding="utf-8")
     for name, text in texts.items():
         put(ROOT / "docs" / "who-wins.md", f"<!-- {name} -->", f"<!-- {name} end -->", text)
 

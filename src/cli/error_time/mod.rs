@@ -10,6 +10,7 @@ use super::report::{save, this_run, titled};
 use super::shard::{Planned, Study};
 use super::sweep::open_scene;
 use anyhow::Context;
+use lodray::picture::Shading;
 use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
 use lodray::report::error_time::{ErrorTime, USUAL_COSTS, USUAL_ERRORS, verdict_text, verdicts};
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
@@ -24,6 +25,8 @@ use std::process::ExitCode;
 
 pub use options::Args;
 
+/// Methods whose triangles stand for no known triangles of full resolution.
+const OWN_TRIANGLES: [&str; 3] = ["cluster", "cluster-paper", "rlod"];
 /// Views that are done, for a run that goes on.
 const LINES: &str = "views.jsonl";
 const DOCUMENT: &str = "error-time.json";
@@ -132,6 +135,11 @@ fn results(
     }
     if !verdict.is_empty() {
         remark(verdict.trim_end())?;
+    }
+    if plan.measure.shading == Shading::Facets && plan.jobs.methods.iter().any(|chosen| OWN_TRIANGLES.contains(&chosen.method.name)) {
+        remark(
+            "pictures of clusters and R-LODs have one normal a hit, all others those of the facets below it: --shading full gives each one",
+        )?;
     }
     Ok(if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
