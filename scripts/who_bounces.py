@@ -53,7 +53,7 @@ def costs(args, name, file, eye, point):
     return [(of[shadow][depth]["milliseconds"], of[shadow][depth]["energy"]) for _, shadow, depth in TRACED]
 
 
-def bounces(args, files, points, eyes, methods, error):
+def bounces(args, files, points, eyes, methods, error, named):
     """The table: of each method the median over scenes of its costs over ours, and the scenes one by one. `points` and `eyes` are by scene."""
     ratios, rows = {}, []
     for name, own in points.items():
@@ -66,14 +66,15 @@ def bounces(args, files, points, eyes, methods, error):
             continue
         ours = costs(args, name, files[name], eyes[name], best["lod"])
         for method in methods:
-            if method not in best:
+            # `paths` does not look for the mesh.
+            if method not in best or method.startswith("input-"):
                 continue
             theirs = costs(args, name, files[name], eyes[name], best[method])
             over = [value for a, b in zip(theirs, ours) for value in (a[0] / b[0], a[1] / b[1])]
             if method != "lod":
                 ratios.setdefault(method, []).append(over)
             cells = [f"{time:.4f} ms" if what == 0 else f"{energy:.1f} uJ" for time, energy in ours for what in (0, 1)] if method == "lod" else [f"{value:.2f}" for value in over]
-            rows.append([name, f"`{method}`", best[method]["setting"].split(", groups")[0], *cells])
+            rows.append([name, f"`{method}`", named(best[method]), *cells])
     heads = [f"{name}, {what}" for name, *_ in TRACED for what in ("time", "energy")]
     summary = [[f"`{method}`", len(of)] + [f"{statistics.median(values):.2f} ({among(values)})" for values in zip(*of)] for method, of in ratios.items()]
     return table(["method over ours, median (least to most)", "scenes", *heads], summary, 1) + "\n\n" + table(["scene", "method", "setting", *heads], rows, 3)

@@ -10,6 +10,8 @@ import math
 import re
 import statistics
 import subprocess
+import tempfile
+import time
 from pathlib import Path
 
 from markdown import among, put, table
@@ -106,9 +108,11 @@ def shard_of(pieces, count):
 
 
 def measured(args, name, place, file):
-    """A piece, a view of a scene on all machines: run now, or kept from before. Where its eye is, and by machine the points of all methods, each with its cost there."""
+    """A piece, a view of a scene on all machines: run now, or kept from before (with --so-far none if it is not there). Where its eye is, and by machine the points of all methods, each with its cost there."""
     folder = args.out / f"{file.stem}-{place}-{args.size}-{'-'.join(args.machines)}"
     if not (folder / "error-time.json").exists():
+        if args.so_far:
+            return None
         _, has_mesh = triangles(args.program, file)
         methods = [method for method in METHODS if has_mesh or not method.startswith("input")]
         quoted = ", ".join(f'"{method}"' for method in methods)
@@ -142,6 +146,12 @@ def cheapest(points, kind, level, cost):
     return {method: point and cost(point["cost"]) for method, point in best(points, kind, level, cost).items()}
 
 
+def named(point):
+    """A setting, in a few words."""
+    knob = COARSENESS.get(point["method"])
+    return f"{knob} {point['knobs'][knob]}" if knob else ""
+
+
 def cells(views):
     """All of it, as lines of CSV: in each view and at each error each method's fastest setting, or that it cannot."""
     lines = [["scene", "radii", "machine", "error", "at most", "method", "setting", "ms", "uJ", "DRAM lines", "ms, moving", "uJ, moving"]]
@@ -149,42 +159,29 @@ def cells(views):
         for kind, (_, levels, _) in ERRORS.items():
             for level in levels:
                 for method, point in best(points, kind, level, COSTS["time"]).items():
-                    setting = "cannot" if point is None else f"{COARSENESS[method]} {point['knobs'][COARSENESS[method]]}" if method in COARSENESS else ""
+                    setting = "cannot" if point is None else named(point)
                     lines.append([*view, kind, level, method, setting, *("" if point is None else f"{cost(point['cost']):.6g}" for cost in COSTS.values())])
     return lines
 
 
-def winners(views, kind, what):
-    """The map: who is cheapest in each view and at each error, and by how much before the next; and what ours costs over that."""
-    name, levels, _ = ERRORS[kind]
-    rows = []
-    for (scene, distance, machine), points in views.items():
-        row = [scene, distance, machine]
-        for level in levels:
-            reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
-            if not reached:
-                row += ["nobody", ""]
-                continue
-            first, *rest = sorted(reached, key=lambda method: (reached[method], METHODS.index(method)))
-            row.append(f"**{first}**" + (f" ({reached[rest[0]] / reached[first]:.2f} {rest[0]})" if rest else ""))
-            row.append(f"{reached['lod'] / reached[first]:.2f}" if "lod" in reached else "cannot")
-        rows.append(row)
-    return table(["scene", "radii", "machine"] + [head for level in levels for head in (f"{name} {level:g}", "ours")], rows, 3)
-
-
-def maps(views, what, unit):
-    """A picture of the winners for each machine: name, and SVG."""
-    _, levels, _ = ERRORS["surface"]
+def maps(views, size):
+    """A picture of the winners for each machine: its name, and SVG."""
     for machine in dict.fromkeys(view[2] for view in views):
-        scenes, places = (list(dict.fromkeys(view[k] for view in views if view[2] == machine)) for k in (0, 1))
-        won = {}
-        for (scene, place, _), points in ((view, points) for view, points in views.items() if view[2] == machine):
-            for level in levels:
-                reached = {method: cost for method, cost in cheapest(points, "surface", level, COSTS[what]).items() if cost is not None}
-                if reached:
-                    first = min(reached, key=lambda method: (reached[method], METHODS.index(method)))
-                    won[scene, place, level] = (first, reached["lod"] / reached[first] if "lod" in reached else None)
-        yield f"who-wins-{what}-{machine}", drawn(f"Least {what} on {machine}, by distance in radii; beside it what ours takes over that ({unit}; -: ours cannot)", scenes, sorted(places, key=lambda place: (place == "within", place != "within" and float(place))), levels, won)
+        own = {f"{scene} {place}": points for (scene, place, called), points in views.items() if called == machine}
+        groups = []
+        for what in ("time", "energy"):
+            columns = []
+            for kind, (_, levels, _) in ERRORS.items():
+                for level in levels:
+                    won = {}
+                    for view, points in own.items():
+                        reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
+                        if reached:
+                            first = min(reached, key=lambda method: (reached[method], METHODS.index(method)))
+                            won[view] = (first, reached["lod"] / reached[first] if "lod" in reached else None)
+                    columns.append((f"{level:g} px" if kind == "surface" else f"FLIP {level:g}", won))
+            groups.append((f"least {what}", columns))
+        yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it (-: ours cannot; *: over the mesh that the scene was made from)", list(own), groups)
 
 
 def all_over_ours(views, kind):
@@ -232,9 +229,12 @@ def short(views, size):
     scenes, machines = (list(dict.fromkeys(view[k] for view in views)) for k in (0, 2))
     lines = [f"{len(views) // len(machines)} views of {len(scenes)} scenes on {' and '.join(f'`{machine}`' for machine in machines)}, at six errors each, frames of {size}:", ""]
     for what in ("time", "energy", "DRAM lines"):
-        of, total = wins(views, what)
-        ranked = sorted((method for method in METHODS if of[method]), key=lambda method: -of[method])
-        lines.append(f"- **{what[0].upper() + what[1:]}**: of {total} cases " + ", ".join(f"`{method}` is cheapest in {of[method]}" if k == 0 else f"`{method}` in {of[method]}" for k, method in enumerate(ranked)) + ".")
+        said = []
+        for machine in machines:
+            of, total = wins({view: points for view, points in views.items() if view[2] == machine}, what)
+            ranked = sorted((method for method in METHODS if of[method]), key=lambda method: -of[method])
+            said.append(f"on `{machine}` of {total} cases " + ", ".join(f"`{method}` {of[method]}" for method in ranked))
+        lines.append(f"- **Cheapest in {what}**: " + "; ".join(said) + ".")
     for level in (0.25, 1):
         over = []
         for method in METHODS[1:]:
@@ -259,6 +259,26 @@ def sizes(views):
     return table(["bytes a triangle", *(f"`{method}`" for method in METHODS)], rows, 1)
 
 
+def builds(args, scene):
+    """Seconds to build each method over a scene, the least of three runs; of ours, whose scene is its structure, to make all of it anew from moved vertices."""
+    seconds = {}
+    with tempfile.TemporaryDirectory() as desk:
+        for method in METHODS:
+            if method.startswith("input"):
+                continue
+            if method == "lod":
+                words = ["refit", scene, "--motion", "wave", "-o", f"{desk}/moved.lod"]
+            else:
+                words = ["render", scene, "--size", "16x16", "--method", method, "--cache", "none", "-o", f"{desk}/picture"]
+            for _ in range(3):
+                from_then = time.monotonic()
+                said = subprocess.run([args.program, *words, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout
+                taken = time.monotonic() - from_then if method == "lod" else json.loads(said)["seconds"]["building"]
+                seconds[method] = min(taken, seconds.get(method, math.inf))
+    rows = [[f"`{method}`", f"{own:.2f}", f"{own / seconds['bvh6']:.2f}", "as it was built: boxes and bounds made anew, file read and written" if method == "lod" else "built anew, or refitted" if method.startswith("bvh") else "built anew"] for method, own in seconds.items()]
+    return table(["method", "seconds", "over `bvh6`", "when vertices move"], rows, 1)
+
+
 def main():
     """Measures what is not yet there, and writes the tables if all is."""
     parser = argparse.ArgumentParser(prog="scripts/who-wins", description=__doc__.split("\n", maxsplit=1)[0])
@@ -269,6 +289,7 @@ def main():
     parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow are measured too (default 4)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
+    parser.add_argument("--so-far", action="store_true", help="measure nothing: tables of the views that are there, and which are not")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the document alone")
     parser.add_argument("--only", type=lambda text: text.split(";"), default=list(SCENES), help=f"scenes to make, by name, with semicolons: {'; '.join(SCENES)} (default all)")
     parser.add_argument("scene", nargs="*", type=Path, help="scene files beside those that are made here, of meshes (build)")
@@ -295,24 +316,25 @@ def main():
     done = {piece: measured(args, *piece, files[piece[0]]) for piece in pieces if of[piece] == shard}
     if shards > 1:
         return
+    missing = [f"{name} {place}" for (name, place), of in done.items() if of is None]
+    done = {piece: of for piece, of in done.items() if of is not None}
     # By scene, as people read it.
     views = {(name, place, machine): done[name, place][1][machine] for name in files for place in [*args.distances, "within"] if (name, place) in done for machine in args.machines}
-    texts = {"short": short(views, args.size), "count": counted(views), "sizes": sizes(views)}
+    texts = {"missing": f"Views that were not measured: {', '.join(missing)}." if missing else "All views were measured.", "short": short(views, args.size), "count": counted(views), "sizes": sizes(views)}
+    if "terrain" in files:
+        texts["builds"] = builds(args, files["terrain"])
     for kind in ERRORS:
         texts[f"{kind} summary"] = all_over_ours(views, kind)
-        for what in ("time", "energy"):
-            texts[f"{kind} {what}"] = winners(views, kind, what)
     if "haydel2023" in args.machines and args.bounces in args.distances:
-        own = {name: done[name, args.bounces] for name in files if name not in WITHIN}
-        texts["bounces"] = bounces(args, files, {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}, METHODS, ERRORS["surface"][2])
+        own = {name: done[name, args.bounces] for name in files if (name, args.bounces) in done}
+        texts["bounces"] = bounces(args, files, {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}, METHODS, ERRORS["surface"][2], named)
     if args.print:
         print("\n\n".join([f"{len(views)} views of {len(files)} scenes, {args.size}", *texts.values()]))
         return
     with (ROOT / "docs" / "who-wins.csv").open("w", encoding="utf-8", newline="") as out:
         csv.writer(out, lineterminator="\n").writerows(cells(views))
-    for what in ("time", "energy"):
-        for name, picture in maps(views, what, args.size):
-            (ROOT / "docs" / "images" / f"{name}.svg").write_text(picture, encoding="utf-8")
+    for name, picture in maps(views, args.size):
+        (ROOT / "docs" / "images" / f"{name}.svg").write_text(picture, encoding="utf-8")
     for name, text in texts.items():
         put(ROOT / "docs" / "who-wins.md", f"<!-- {name} -->", f"<!-- {name} end -->", text)
 
