@@ -14,7 +14,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
-from options import add_program
+from options import add_program, ended
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -173,4 +173,4 @@ def measure(args, machine):
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from markdown import put, table
-from options import ROOT, add_program
+from options import ROOT, add_program, ended
 
 SCENES = ["spikes", "terrain", "sphere", "cloth"]
 LEVELS, BASE = 5, 512
@@ -74,4 +74,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

@@ -11,7 +11,7 @@ import subprocess
 from pathlib import Path
 
 from markdown import among, number, put, table
-from options import add_program
+from options import add_program, ended
 
 ROOT = Path(__file__).resolve().parent.parent
 CLUSTERS = ["cluster", "cluster-paper"]
@@ -133,4 +133,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

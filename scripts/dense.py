@@ -13,7 +13,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
-from options import add_program
+from options import add_program, ended
 
 ROOT = Path(__file__).resolve().parent.parent
 LEAVES = [("block", 16), ("dgf", 4), ("dgf", 2)]
@@ -125,4 +125,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 from markdown import among, number, put, table
-from options import add_program
+from options import add_program, ended
 
 ROOT = Path(__file__).resolve().parent.parent
 LEVELS = [1, 2, 3, 4]
@@ -291,4 +291,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

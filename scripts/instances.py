@@ -9,7 +9,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
-from options import add_program
+from options import add_program, ended
 
 ROOT = Path(__file__).resolve().parent.parent
 # Scenes and the sizes of their frames. In the forest a ray asks for hundreds of lines, so its frames are small.
@@ -92,4 +92,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

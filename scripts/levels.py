@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from options import add_program
+from options import add_program, ended
 
 DISTANCES = ["1.5", "4", "16"]
 
@@ -50,4 +50,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

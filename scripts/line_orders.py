@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from options import add_program
+from options import add_program, ended
 
 ORDERS = ["tree", "veb", "coarse", "blocks", "own"]
 TERRAINS = ["0.45", "0.55", "0.6"]
@@ -60,4 +60,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

@@ -1,6 +1,8 @@
 """Options that several scripts have."""
 
 import argparse
+import subprocess
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -16,3 +18,11 @@ def _program(text):
 def add_program(parser):
     """--program: lodray, which is there."""
     parser.add_argument("--program", type=_program, default=str(ROOT / "target" / "release" / "lodray"), help="lodray, built (default target/release/lodray)")
+
+
+def ended(main):
+    """Runs a script's main function. What a command refused, it has said itself."""
+    try:
+        main()
+    except subprocess.CalledProcessError as error:
+        sys.exit(error.returncode)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from keep import kept
 from markdown import number, put, table
-from options import add_program
+from options import add_program, ended
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -116,4 +116,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

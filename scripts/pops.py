@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 
 from markdown import put, table
-from options import add_program
+from options import add_program, ended
 from plot import diagram
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -66,4 +66,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

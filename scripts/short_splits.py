@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from options import add_program
+from options import add_program, ended
 
 FORMS = ["compact", "short"]
 TERRAINS = ["0.45", "0.6"]
@@ -56,4 +56,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from options import add_program
+from options import add_program, ended
 
 TERRAINS = ["0.45", "0.55", "0.6"]
 FAR = ["0.8", "1.6", "3", "6", "12"]
@@ -63,4 +63,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)

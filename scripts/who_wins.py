@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from markdown import among, put, table
-from options import add_program
+from options import add_program, ended
 from who_bounces import bounces
 from who_map import drawn
 
@@ -279,12 +279,23 @@ def builds(args, scene):
     return table(["method", "seconds", "over `bvh6`", "when vertices move"], rows, 1)
 
 
+def distances(text):
+    """Distances, with commas, as they were written."""
+    of = text.split(",")
+    try:
+        if all(float(distance) > 0 for distance in of):
+            return of
+    except ValueError:
+        pass
+    raise argparse.ArgumentTypeError(f"'{text}' is no list of distances")
+
+
 def main():
     """Measures what is not yet there, and writes the tables if all is."""
     parser = argparse.ArgumentParser(prog="scripts/who-wins", description=__doc__.split("\n", maxsplit=1)[0])
     add_program(parser)
     parser.add_argument("--size", default="1920x1080", help="size of the frames (default 1920x1080)")
-    parser.add_argument("--distances", type=lambda text: text.split(","), default="0.8,1.2,2,4,8,16,32,64".split(","), help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
+    parser.add_argument("--distances", type=distances, default="0.8,1.2,2,4,8,16,32,64", help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
     parser.add_argument("--machines", type=lambda text: text.split(","), default=["haydel2023", "turing2018"], help="machines, with commas (default haydel2023,turing2018)")
     parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow are measured too (default 4)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
@@ -340,4 +351,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    ended(main)
