@@ -4,11 +4,11 @@ import json
 import statistics
 import subprocess
 
+from keep import kept
 from markdown import among, table
 
 # A hit is off by at most so many pixels (99 of 100): the setting that primary rays choose is what the others have.
 WITHIN = 1
-SIZE = (512, 512)
 # What is traced: name, whether lights are asked, and bounces.
 TRACED = [("primary rays", False, 0), ("and a shadow ray each", True, 0), ("and a bounce", True, 1)]
 LIGHTS = """
@@ -29,12 +29,13 @@ ground = [0.3, 0.3, 0.3]
 """
 
 
-def description(args, file, eye, shadow):
+def description(args, name, file, eye, shadow):
     """A file that describes the scene as a camera at `eye` sees it."""
     facts = json.loads(subprocess.run([args.program, "info", file, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout)
-    path = args.out / f"{file.stem}-{'shadow' if shadow else 'plain'}.toml"
-    picture = f"[picture]\nwidth = {SIZE[0]}\nheight = {SIZE[1]}\nsamples = 1\ndepth = 1\nshadow_rays = {str(shadow).lower()}\n"
-    camera = f'[[camera]]\nname = "eye"\neye = {eye}\ntarget = {facts["centre"]}\nfov = 40.0\n'
+    path = args.out / f"{name.replace(', ', '-').replace(' ', '-')}-{args.bounces}-{args.size}-{'shadow' if shadow else 'plain'}.toml"
+    width, height = args.size.split("x")
+    picture = f"[picture]\nwidth = {width}\nheight = {height}\nsamples = 1\ndepth = 1\nshadow_rays = {str(shadow).lower()}\n"
+    camera = f'[[camera]]\nname = "eye"\neye = {eye}\ntarget = {facts["centre"]}\n'
     path.write_text(f'{picture}\n{camera}\n[[model]]\nfile = "{file.resolve()}"\nmaterial = "grey"\n{LIGHTS}', encoding="utf-8")
     return path
 
@@ -42,14 +43,8 @@ def description(args, file, eye, shadow):
 def costs(args, name, file, eye, point):
     """Milliseconds and energy of all that is traced, one after the other."""
     options = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
-    of = {}
-    for shadow in (False, True):
-        kept = args.out / f"bounces-{name}-{point['method']}-{shadow}.json".replace(", ", "-").replace(" ", "-")
-        if not kept.exists():
-            words = ["--quiet", "paths", description(args, file, eye, shadow), "--method", point["method"], *options, "--machine", "haydel2023", "-o", args.out / "paths", "--force", "--json"]
-            run = subprocess.run([args.program, *words], check=True, stdout=subprocess.PIPE, text=True)
-            kept.write_text(run.stdout, encoding="utf-8")
-        of[shadow] = json.loads(kept.read_text(encoding="utf-8"))
+    words = lambda shadow: ["--quiet", "paths", description(args, name, file, eye, shadow), "--method", point["method"], *options, "--machine", "haydel2023", "-o", args.out / "paths", "--force"]
+    of = {shadow: kept(args, words(shadow)) for shadow in (False, True)}
     return [(of[shadow][depth]["milliseconds"], of[shadow][depth]["energy"]) for _, shadow, depth in TRACED]
 
 

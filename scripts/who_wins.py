@@ -146,6 +146,15 @@ def cheapest(points, kind, level, cost):
     return {method: point and cost(point["cost"]) for method, point in best(points, kind, level, cost).items()}
 
 
+def winner(points, kind, level, what):
+    """Who is cheapest, and what ours takes over that (none if it has no such setting); none if nobody has one."""
+    reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
+    if not reached:
+        return None
+    first = min(reached, key=lambda method: (reached[method], METHODS.index(method)))
+    return first, reached["lod"] / reached[first] if "lod" in reached else None
+
+
 def named(point):
     """A setting, in a few words."""
     knob = COARSENESS.get(point["method"])
@@ -173,12 +182,7 @@ def maps(views, size):
             columns = []
             for kind, (_, levels, _) in ERRORS.items():
                 for level in levels:
-                    won = {}
-                    for view, points in own.items():
-                        reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
-                        if reached:
-                            first = min(reached, key=lambda method: (reached[method], METHODS.index(method)))
-                            won[view] = (first, reached["lod"] / reached[first] if "lod" in reached else None)
+                    won = {view: first for view, points in own.items() if (first := winner(points, kind, level, what))}
                     columns.append((f"{level:g} px" if kind == "surface" else f"FLIP {level:g}", won))
             groups.append((f"least {what}", columns))
         yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it (-: ours cannot; *: over the mesh that the scene was made from)", list(own), groups)
@@ -195,12 +199,12 @@ def all_over_ours(views, kind):
                 ratios = []
                 reached = asked = 0
                 for points in views.values():
-                    best = cheapest(points, kind, level, COSTS[what])
-                    if method in best and best["lod"] is not None:
+                    of = cheapest(points, kind, level, COSTS[what])
+                    if method in of and of["lod"] is not None:
                         asked += 1
-                        if best[method] is not None:
+                        if of[method] is not None:
                             reached += 1
-                            ratios.append(best[method] / max(best["lod"], 1e-12))
+                            ratios.append(of[method] / max(of["lod"], 1e-12))
                 cells.append(f"{statistics.median(ratios):.2f} ({among(ratios)})" if ratios else "cannot")
             rows.append([f"{level:g}", f"`{method}`", f"{reached} of {asked}", *cells])
     return table([name, "method over ours, median (least to most)", "views reached", *COSTS], rows, 3)
@@ -212,9 +216,8 @@ def wins(views, what):
     for points in views.values():
         for kind, (_, levels, _) in ERRORS.items():
             for level in levels:
-                reached = {own: cost for own, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
-                if reached:
-                    of[min(reached, key=lambda own: (reached[own], METHODS.index(own)))] += 1
+                if first := winner(points, kind, level, what):
+                    of[first[0]] += 1
     return of, sum(of.values())
 
 
