@@ -5,6 +5,7 @@ axi_read_adapter.sv
 bary_map.sv
 bary_step.sv
 base_corners.sv
+block_clock.sv
 bound_decode.sv
 box_decode.sv
 box_decode8.sv
@@ -17,6 +18,7 @@ child_records.sv
 child_sort.sv
 child_sort6.sv
 child_test.sv
+clock_gate.sv
 closest_hit.sv
 cone_tolerance.sv
 copy_turns.sv
@@ -39,6 +41,7 @@ lod_edges_parallel.sv
 lod_edges_serial.sv
 lod_test.sv
 lod_test_by.sv
+memory_1w1r.sv
 morph_vertex.sv
 multiplier.sv
 node_address.sv
@@ -60,6 +63,7 @@ start_edges_parallel.sv
 start_edges_serial.sv
 start_setup.sv
 start_test.sv
+station.sv
 tessellate.sv
 three_passes.sv
 traversal_stack.sv
@@ -70,3 +74,4 @@ tri_decide.sv
 tri_edges_parallel.sv
 tri_edges_serial.sv
 tri_test.sv
+unit_counters.sv

@@ -7,15 +7,19 @@
 /// that finds nothing before it is kept beside the memory too. Only pointers and length are reset.
 module hit_queue #(
   parameter int unsigned W = 1,
-  parameter int unsigned DEPTH = 4
+  parameter int unsigned DEPTH = 4,
+  parameter bit PARITY = 1'b0
 ) (
   input  logic         clk_i,
   input  logic         rst_ni,
+  input  lod_pkg::memory_test_t test_i,
   input  logic         push_i,
   input  logic [W-1:0] data_i,
   input  logic         pop_i,
   output logic [W-1:0] data_o,
-  output logic         empty_o
+  output logic         empty_o,
+  // A word that the memory changed is popped.
+  output logic         fault_o
 );
 
   if (DEPTH < 2) begin : g_illegal
@@ -27,10 +31,7 @@ module hit_queue #(
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
   localparam logic [INDEX_W-1:0] LAST = INDEX_W'(DEPTH - 1);
 
-  // On an FPGA not in block RAMs: few and wide, and late.
-  (* ram_style = "distributed" *)
-  logic [W-1:0]       items_q [DEPTH];
-  logic [W-1:0]       read_q;
+  logic [W-1:0]       read;
   logic [W-1:0]       direct_q;
   // The oldest item was never behind another.
   logic               is_direct_q;
@@ -42,7 +43,7 @@ module hit_queue #(
 
   assign behind  = (head_q == LAST) ? '0 : head_q + INDEX_W'(1);
   assign direct  = empty_o || (pop_i && len_q == LEN_W'(1));
-  assign data_o  = is_direct_q ? direct_q : read_q;
+  assign data_o  = is_direct_q ? direct_q : read;
   assign empty_o = len_q == '0;
 
   always_ff @(posedge clk_i) begin
@@ -58,9 +59,14 @@ module hit_queue #(
     end
   end
 
+  // On an FPGA not in block RAMs: few and wide.
+  memory_1w1r #(.W(W), .WORDS(DEPTH), .DISTRIBUTED(1'b1), .PARITY(PARITY)) u_items (
+    .clk_i, .test_i,
+    .write_i(push_i), .write_place_i(tail_q), .data_i,
+    .read_i(pop_i), .read_place_i(behind), .use_i(pop_i && !is_direct_q), .data_o(read), .fault_o
+  );
+
   always_ff @(posedge clk_i) begin
-    if (push_i) items_q[tail_q] <= data_i;
-    if (pop_i) read_q <= items_q[behind];
     if (push_i && direct) direct_q <= data_i;
     if (pop_i || empty_o) is_direct_q <= direct;
   end

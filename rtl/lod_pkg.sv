@@ -41,6 +41,7 @@ package lod_pkg;
   localparam int unsigned BOUND_W = 33;                                         // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;                                  // 2 TiB of 32-byte lines
   localparam int unsigned EPOCH_W = 8;                                          // of the number of a context's ray, which its lines come back with
+  localparam int unsigned OWED_W = 10;                                          // of the number of lines that a context has asked for and that have not come
   localparam int unsigned ANSWER_LIMIT_W = 20;                                  // of the cycles after which a line may be late
   localparam int unsigned NODE_INDEX_W = 20;                                    // of a node at the ports: 4^10 nodes on the last level that there can be
   localparam int unsigned FULL_ID_W = 48;                                       // 28 bits of tree, 2 of each of ten levels
@@ -930,6 +931,52 @@ package lod_pkg;
     logic [3:0][63:0] line;     // Its 32 bytes, word 0 first.
   } memory_answer_t;
   localparam int unsigned MEMORY_ANSWER_W = 8 + EPOCH_W + 1 + 4 * 64;
+
+  // What the memories of a unit take for test, which mean nothing to what it computes.
+  typedef struct packed {
+    logic flip;        // Words are written with the wrong parity.
+    logic [6:0] pins;  // For the pins of a compiled memory: margins, modes.
+  } memory_test_t;
+  localparam int unsigned MEMORY_TEST_W = 1 + 7;
+
+  // What a context is doing: for who looks from outside, at a ray that is stuck too. What the state gives no meaning to is 0.
+  typedef struct packed {
+    logic [4:0] state;          // Its state.
+    logic rests;                // It takes no ray, as lines of a ray with the next one's epoch may still come.
+    logic [EPOCH_W-1:0] epoch;  // Number of its ray, or of the one before.
+    logic [OWED_W-1:0] owed;    // Lines that it has asked for and that have not come, of rays before too.
+    logic [1:0] want;           // Lines wanted and not yet asked for, by place.
+    logic [1:0] waiting;        // Lines asked for and not there, by place.
+    logic [6:0] stacked;        // Entries on its stack.
+    logic [31:0] tag;           // Tag of its ray.
+    logic [2:0] error;          // Why its ray ends early: a code of `ray_error_t`.
+    logic [1:0] kind;           // Kind of the entry under visit.
+    logic [3:0] level;          // Its level in its tree.
+    logic [27:0] index;         // Its index.
+    logic [31:0] visits;        // Entries that the ray may still visit.
+    logic [2:0] left;           // Triangles still to be sent.
+    logic [2:0] pending;        // Triangles without a verdict.
+  } context_view_t;
+  localparam int unsigned CONTEXT_VIEW_W = 5 + 1 + EPOCH_W + OWED_W + 2 + 2 + 7 + 32 + 3 + 2 + 4 + 28 + 32 + 3 + 3;
+
+  // What a unit did since its counters were cleared, each modulo 2^32.
+  typedef struct packed {
+    logic [31:0] cycles;         // Cycles.
+    logic [31:0] busy;           // Those in which a ray was under way, or something waited at a port.
+    logic [31:0] rays;           // Rays taken.
+    logic [31:0] hits;           // Rays done that met something.
+    logic [31:0] misses;         // Rays done that met nothing.
+    logic [31:0] errors;         // Rays that ended early.
+    logic [31:0] requests;       // Lines asked for.
+    logic [31:0] answers;        // Lines that came.
+    logic [31:0] compared;       // Triangles met, as each is compared with the closest.
+    logic [31:0] rays_wait;      // Cycles in which a ray waited at the port.
+    logic [31:0] hits_wait;      // Cycles in which a hit waited at the port.
+    logic [31:0] requests_wait;  // Cycles in which a request waited at the port.
+    logic [9:0][31:0] taken;     // What blocks and ports took from contexts: ray_setup, node_address, child_test, tree_deciders, lod_test, tessellate, tri_test, hit_divide (but for t), bary_map, hits.
+    logic [9:0][31:0] refused;   // Cycles in which a context asked for each of them and none was served.
+  } unit_counters_t;
+  localparam int unsigned UNIT_COUNTERS_W = 32 + 32 + 32 + 32 + 32 + 32 + 32 + 32 + 32 + 32 + 32 + 32 + 10 * 32 + 10 * 32;
 
   // State of a context.
   typedef enum logic [4:0] {

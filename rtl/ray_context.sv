@@ -5,17 +5,26 @@
 /// States, conditions and registers are those of docs/traversal-unit.md. A context asks for a block with `*_request_o`, holding the operands until
 /// `*_grant_i`; the result comes with `*_valid_i`, later. It computes nothing itself but counts.
 /// What cannot be done ends the ray early, before it is done; errors of memory and a flush are kept until the context waits for no block.
-/// Only states, bits that ask for something, and the epoch are reset.
-module ray_context (
+/// Only states, bits that ask for something, and what counts rays and lines are reset.
+/// What happens in a cycle, and which registers it writes, is said once, in "Steps"; everything behind it is these registers.
+module ray_context #(
+  parameter bit MEMORY_PARITY = 1'b0
+) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
+  input  lod_pkg::memory_test_t            memory_test_i,
   input  lod_pkg::scene_config_t           scene_i,
-  // The scene is one for this hardware; every ray under way ends; the limit of answers has passed since the last tick.
+  // The scene is one for this hardware; every ray under way ends; the limit of answers has passed since the last tick; and as many ticks as there are epochs since the last age.
   input  logic                             fits_i,
   input  logic                             flush_i,
   input  logic                             tick_i,
-  // Ray in.
+  input  logic                             age_i,
+  // What it is doing, for who looks from outside; a memory of its gave another word than it took.
+  output lod_pkg::context_view_t           view_o,
+  output logic                             fault_o,
+  // Ray in: `idle_o` is that it has none, `free_o` that it takes one.
   output logic                             idle_o,
+  output logic                             free_o,
   input  logic                             take_i,
   input  lod_pkg::ray_in_t                 ray_i,
   input  lod_pkg::secondary_in_t           secondary_i,
@@ -149,6 +158,10 @@ module ray_context (
   // Number of the ray among the context's: its lines come back with it. Why it ends early, how many entries it may still visit, and whether a tick has passed
   // since something came that it waits for.
   logic [lod_pkg::EPOCH_W-1:0] epoch_q;
+  // Lines asked for by this ray and those before, and not there; rays before this one since there was none such; whether an age has passed since the context rests.
+  logic [lod_pkg::OWED_W-1:0]  owed_q;
+  logic [lod_pkg::EPOCH_W-1:0] behind_q;
+  logic                        rested_q;
   lod_pkg::ray_error_t         error_q;
   logic [31:0]                 visits_q;
   logic                        stale_q;
@@ -235,11 +248,15 @@ module ray_context (
   lod_pkg::stack_entry_t top, child_entry;
   lod_pkg::ray_error_t   push_objection;
 
-  traversal_stack u_stack (
-    .clk_i, .rst_ni,
+  logic                                       stack_fault, splits_fault;
+  logic [$clog2(lod_pkg::STACK_ENTRIES+1)-1:0] stack_length;
+
+  traversal_stack #(.PARITY(MEMORY_PARITY)) u_stack (
+    .clk_i, .rst_ni, .test_i(memory_test_i),
     .clear_i(setup_valid_i),
     .push_i(push), .entry_i(child_entry),
-    .pop_i(pop), .entry_o(top), .empty_o(stack_empty), .full_o(stack_full)
+    .pop_i(pop), .entry_o(top), .empty_o(stack_empty), .full_o(stack_full),
+    .length_o(stack_length), .fault_o(stack_fault)
   );
 
   // What would stop the context elsewhere has no part in these.
@@ -276,7 +293,11 @@ module ray_context (
 
   // ---- Requests ----
 
+  // With the next ray the epoch would be that of a line that may still come.
+  logic rests;
   assign idle_o = state_q == lod_pkg::IDLE;
+  assign rests  = idle_o && behind_q == '1 && owed_q != '0;
+  assign free_o = idle_o && !rests;
 
   assign setup_request_o = state_q == lod_pkg::SETUP;
   lod_pkg::point_t     origin_whole;
@@ -648,32 +669,73 @@ module ray_context (
   end
 
   always_ff @(posedge clk_i) begin
-    if (!rst_ni) epoch_q <= '0;
-    else if (setup_valid_i) epoch_q <= epoch_q + lod_pkg::EPOCH_W'(1);
+    if (!rst_ni) begin
+      epoch_q  <= '0;
+      behind_q <= '0;
+    end else if (setup_valid_i) begin
+      epoch_q  <= epoch_q + lod_pkg::EPOCH_W'(1);
+      behind_q <= owed_q == '0 ? '0 : behind_q + lod_pkg::EPOCH_W'(1);
+    end
+  end
+
+  // Every line is owed until it comes, late or not. What has not come in an age of rest is given up: it never comes, or the memory broke its rule.
+  logic gives_up;
+  assign gives_up = rests && age_i && rested_q;
+
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni || gives_up) owed_q <= '0;
+    else owed_q <= owed_q + lod_pkg::OWED_W'(fetch_grant_i) - lod_pkg::OWED_W'(line_valid_i && owed_q != '0);
+    rested_q <= rests && (age_i || rested_q);
   end
 
   // The unit's alone.
   logic unused_limit;
   assign unused_limit = ^scene_i.answer_limit;
 
-  // ---- Next state ----
+  // ---- Steps: the next state, and what else a state does ----
 
-  // The triangles of a node, or its own, are tested from the next cycle on. What stops the context late has no part in it: then they are not.
-  logic enter_tri;
+  // Lines are wanted from the next cycle on, and for what. A child is visited, not pushed; an entry is left for its node. A tree is entered, or a node of one. The triangles of a node, or its own,
+  // are tested from the next cycle on: what stops the context late has no part in it, as then they are not.
+  logic            want, visit_child, enter_root, enter_node, enter_tri, enter_four;
+  logic [1:0]      wanted;
+  lod_pkg::fetch_t fetched_for;
   always_comb begin
-    state_d   = state_q;
-    enter_tri = 1'b0;
+    state_d     = state_q;
+    want        = 1'b0;
+    wanted      = 2'b01;
+    fetched_for = lod_pkg::NODE;
+    visit_child = 1'b0;
+    enter_root  = 1'b0;
+    enter_node  = 1'b0;
+    enter_tri   = 1'b0;
+    enter_four  = 1'b0;
     case (state_q)
       lod_pkg::IDLE:       if (take_i) state_d = (error_taken == lod_pkg::ERROR_NONE) ? lod_pkg::SETUP : lod_pkg::DONE;
       lod_pkg::SETUP:      if (setup_grant_i) state_d = lod_pkg::SETUP_WAIT;
       lod_pkg::SETUP_WAIT: if (setup_valid_i) state_d = lod_pkg::VISIT;
-      lod_pkg::VISIT:      state_d = (entry.kind == lod_pkg::ENTRY_TREE_NODE) ? lod_pkg::LOD : lod_pkg::FETCH;
+      lod_pkg::VISIT: begin
+        state_d = lod_pkg::FETCH;
+        case (entry.kind)
+          lod_pkg::ENTRY_BVH_NODE: want = 1'b1;
+          lod_pkg::ENTRY_TREE: begin
+            want        = 1'b1;
+            wanted      = compact ? 2'b01 : 2'b11;
+            fetched_for = lod_pkg::RECORD;
+          end
+          lod_pkg::ENTRY_TREE_NODE: begin
+            state_d    = lod_pkg::LOD;
+            enter_node = 1'b1;
+          end
+          default: ;
+        endcase
+      end
       lod_pkg::FETCH: begin
         case (fetch_q)
           lod_pkg::NODE:   if (record_there) state_d = lod_pkg::CHILD;
           lod_pkg::RECORD: if (record_there) begin
-            state_d   = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
-            enter_tri = record.depth == '0;
+            state_d    = (record.depth == '0) ? lod_pkg::TRI : DECIDING && prior ? lod_pkg::DECIDE : lod_pkg::LOD;
+            enter_root = 1'b1;
+            enter_tri  = record.depth == '0;
           end
           // SPLIT: it may still be under way where the vertices are elsewhere.
           default:         if (want_q == '0 && !waiting_q[1] && !(compact && waiting_q[0])) state_d = lod_pkg::MORPH;
@@ -682,7 +744,8 @@ module ray_context (
       lod_pkg::CHILD:      if (child_grant_i) state_d = lod_pkg::CHILD_WAIT;
       lod_pkg::CHILD_WAIT: if (child_valid_i) state_d = lod_pkg::PUSH;
       lod_pkg::PUSH: begin
-        if (count_q == 3'd1) state_d = lod_pkg::VISIT;
+        visit_child = count_q == 3'd1;
+        if (visit_child) state_d = lod_pkg::VISIT;
         else if (count_q == 3'd0) state_d = lod_pkg::POP;
       end
       lod_pkg::POP: begin
@@ -692,15 +755,21 @@ module ray_context (
       lod_pkg::DECIDE:      if (decide_grant_i) state_d = lod_pkg::DECIDE_WAIT;
       lod_pkg::DECIDE_WAIT: if (decide_valid_i) state_d = lod_pkg::LOD;
       lod_pkg::LOD, lod_pkg::LOD_WAIT: begin
-        if (decided) begin
-          state_d   = refine ? lod_pkg::FETCH : lod_pkg::TRI;
-          enter_tri = !refine;
+        if (decided && refine) begin
+          state_d     = lod_pkg::FETCH;
+          want        = 1'b1;
+          wanted      = vertices_in_split ? 2'b01 : last_split ? 2'b10 : 2'b11;
+          fetched_for = lod_pkg::SPLIT;
+        end else if (decided) begin
+          state_d   = lod_pkg::TRI;
+          enter_tri = 1'b1;
         end else if (lod_grant_i) state_d = lod_pkg::LOD_WAIT;
       end
       lod_pkg::MORPH:       if (morph_grant_i) state_d = lod_pkg::MORPH_WAIT;
       lod_pkg::MORPH_WAIT:  if (morph_valid_i) begin
-        state_d   = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
-        enter_tri = last_split;
+        state_d    = last_split ? lod_pkg::TRI : lod_pkg::CHILD;
+        enter_tri  = last_split;
+        enter_four = last_split;
       end
       lod_pkg::TRI:         if (left_q == '0 && pending_q == '0) state_d = lod_pkg::POP;
       lod_pkg::DIVIDE_V:    if (divide_grant_i) state_d = lod_pkg::DIVIDE_W;
@@ -733,11 +802,6 @@ module ray_context (
 
   // ---- Entry, node and triangle ----
 
-  // A tree is entered, or a node of one.
-  logic enter_root, enter_node;
-  assign enter_root = state_q == lod_pkg::FETCH && fetch_q == lod_pkg::RECORD && record_there;
-  assign enter_node = state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE_NODE;
-
   // The line with its corners comes.
   logic corners_come, root_comes;
   assign corners_come = compact ? arrived[0] : arrived[1];
@@ -752,13 +816,13 @@ module ray_context (
 
   always_ff @(posedge clk_i) begin
     if (setup_valid_i) entry_q <= '0;
-    else if (state_q == lod_pkg::PUSH && count_q == 3'd1) entry_q <= lod_pkg::keep_entry(child_entry);
+    else if (visit_child) entry_q <= lod_pkg::keep_entry(child_entry);
     else if (pop && !drop) entry_q <= lod_pkg::keep_entry(top);
     else if (enter_root) entry_q <= lod_pkg::keep_entry(root_entry);
   end
 
   always_ff @(posedge clk_i) begin
-    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) tree_q <= lod_pkg::INDEX_W'(entry.index);
+    if (want && fetched_for == lod_pkg::RECORD) tree_q <= lod_pkg::INDEX_W'(entry.index);
   end
 
   // Its triangle, at full resolution (f) and as morphed (p): a root's as it is.
@@ -780,18 +844,19 @@ module ray_context (
       assign {p2, p1, p0} = node_corners;
     end
 
-    split_triangles #(.W(CORNER_W), .LEVELS(SPLITS)) u_splits (
-      .clk_i,
+    split_triangles #(.W(CORNER_W), .LEVELS(SPLITS), .PARITY(MEMORY_PARITY)) u_splits (
+      .clk_i, .test_i(memory_test_i),
       .root_write_i(root_comes), .root_corners_i(roots_now),
       .corners_write_i(morph_grant_i && !last_split), .inserted_write_i(morph_valid_i && !last_split), .level_i(level), .inserted_i(inserted_now),
       .read_i(enter_root || enter_node), .root_i(enter_root), .parent_i(entry.level - 4'd1),
-      .child_i(entry.kind == lod_pkg::ENTRY_TREE_NODE ? entry.index[1:0] : 2'd3), .corners_o(node_corners)
+      .child_i(entry.kind == lod_pkg::ENTRY_TREE_NODE ? entry.index[1:0] : 2'd3), .corners_o(node_corners), .fault_o(splits_fault)
     );
   end else begin : g_no_splits
     // There are roots alone.
     logic                 unused_node;
     lod_pkg::kept_point_t f0_q, f1_q, f2_q;
     assign unused_node = ^{enter_root, enter_node};
+    assign splits_fault = 1'b0;
     always_ff @(posedge clk_i) begin
       if (root_comes) {f2_q, f1_q, f0_q} <= line_corners_i;
     end
@@ -870,9 +935,7 @@ module ray_context (
       waiting_q <= '0;
     end else begin
       waiting_q <= (waiting_q | granted) & ~arrived;
-      if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) want_q <= 2'b01;
-      else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) want_q <= compact ? 2'b01 : 2'b11;
-      else if (decided && refine) want_q <= vertices_in_split ? 2'b01 : last_split ? 2'b10 : 2'b11;
+      if (want) want_q <= wanted;
       else want_q <= want_q & ~granted;
     end
   end
@@ -883,9 +946,7 @@ module ray_context (
     // Vertices come before `tessellate` is asked.
     if (arrived[1]) line1_q <= LINE1_W'(line_i.line);
     else if (SPLITTING && morph_valid_i) line1_q <= LINE1_W'(g_now);
-    if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_BVH_NODE) fetch_q <= lod_pkg::NODE;
-    else if (state_q == lod_pkg::VISIT && entry.kind == lod_pkg::ENTRY_TREE) fetch_q <= lod_pkg::RECORD;
-    else if (decided && refine) fetch_q <= lod_pkg::SPLIT;
+    if (want) fetch_q <= fetched_for;
   end
 
   // ---- Children and triangles ----
@@ -899,8 +960,8 @@ module ray_context (
 
   always_ff @(posedge clk_i) begin
     if (enter_tri) begin
-      four_q    <= state_q == lod_pkg::MORPH_WAIT;
-      left_q    <= (state_q == lod_pkg::MORPH_WAIT) ? 3'd4 : 3'd1;
+      four_q    <= enter_four;
+      left_q    <= enter_four ? 3'd4 : 3'd1;
       next_q    <= '0;
       pending_q <= '0;
     end else begin
@@ -911,6 +972,39 @@ module ray_context (
       pending_q <= pending_q + 3'(tri_grant_i) - 3'(tri_miss_i) - 3'(select_valid_i);
     end
   end
+
+  // ---- What it is doing ----
+
+  // Behind its setup a ray has an entry under visit, unless it ended before.
+  logic has_entry;
+  assign has_entry = state_q > lod_pkg::SETUP_WAIT && state_q != lod_pkg::DONE;
+
+  always_comb begin
+    view_o         = '0;
+    view_o.state   = state_q;
+    view_o.rests   = rests;
+    view_o.epoch   = epoch_q;
+    view_o.owed    = owed_q;
+    view_o.stacked   = 7'(stack_length);
+    if (!idle_o) begin
+      view_o.tag   = tag_q;
+      view_o.error = error_q;
+    end
+    if (has_entry) begin
+      view_o.kind    = entry.kind;
+      view_o.level   = entry.level;
+      view_o.index   = entry.index;
+      view_o.visits  = visits_q;
+      view_o.want    = want_q;
+      view_o.waiting = waiting_q;
+    end
+    if (state_q == lod_pkg::TRI) begin
+      view_o.left    = left_q;
+      view_o.pending = pending_q;
+    end
+  end
+
+  assign fault_o = stack_fault || splits_fault;
 
 endmodule
 

@@ -8,9 +8,11 @@
 /// A node that splits is written in two cycles: its corners, which are those at `corners_o`, and its inserted vertices. Nothing is reset.
 module split_triangles #(
   parameter int unsigned W = 1,
-  parameter int unsigned LEVELS = 1
+  parameter int unsigned LEVELS = 1,
+  parameter bit PARITY = 1'b0
 ) (
   input  logic              clk_i,
+  input  lod_pkg::memory_test_t test_i,
   input  logic              root_write_i,
   input  logic [2:0][W-1:0] root_corners_i,
   input  logic              corners_write_i,
@@ -21,7 +23,9 @@ module split_triangles #(
   input  logic              root_i,
   input  logic [3:0]        parent_i,
   input  logic [1:0]        child_i,
-  output logic [2:0][W-1:0] corners_o
+  output logic [2:0][W-1:0] corners_o,
+  // A word that a memory changed was read in the cycle before.
+  output logic              fault_o
 );
 
   localparam int unsigned ROOT = 2 * LEVELS;
@@ -31,23 +35,32 @@ module split_triangles #(
   logic               write;
   logic [PLACE_W-1:0] write_place;
   logic [2:0][W-1:0]  written, words;
+  logic [2:0]         faults;
+  logic               used;
 
   assign write       = root_write_i || corners_write_i || inserted_write_i;
   assign write_place = root_write_i ? PLACE_W'(ROOT) : PLACE_W'({level_i, inserted_write_i});
   assign written     = root_write_i ? root_corners_i : inserted_write_i ? inserted_i : corners_o;
 
+  if (PARITY) begin : g_used
+    logic used_q;
+    assign used = used_q;
+    always_ff @(posedge clk_i) used_q <= read_i;
+  end else begin : g_not_looked_at
+    assign used = 1'b0;
+  end
+  assign fault_o = faults != '0;
+
   for (genvar k = 0; k < 3; k++) begin : g_bank
-    logic [W-1:0]       words_q [PLACES];
-    logic [W-1:0]       word_q;
     logic [PLACE_W-1:0] read_place;
 
     assign read_place = root_i ? PLACE_W'(ROOT) : PLACE_W'({parent_i, child_i != 2'(k)});
-    assign words[k]   = word_q;
 
-    always_ff @(posedge clk_i) begin
-      if (write) words_q[write_place] <= written[k];
-      if (read_i) word_q <= words_q[read_place];
-    end
+    memory_1w1r #(.W(W), .WORDS(PLACES), .PARITY(PARITY)) u_words (
+      .clk_i, .test_i,
+      .write_i(write), .write_place_i(write_place), .data_i(written[k]),
+      .read_i, .read_place_i(read_place), .use_i(used), .data_o(words[k]), .fault_o(faults[k])
+    );
   end
 
   // The corner that stays is at its own place, and so are the vertices of child 3; the other two of a child change places.

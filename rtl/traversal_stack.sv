@@ -6,16 +6,22 @@
 /// exclude each other. A memory with one write and one clocked read port, which never work in the same cycle; the top is what was read last. Depth: `STACK_ENTRIES`, which a quad-BVH of
 /// `MAX_BVH_DEPTH` levels and a tree of `STORED_LEVELS` cannot exceed (each level leaves at most three siblings waiting). Of deeper ones the caller stops at
 /// `full_o`: then nothing may be pushed. Only the length is reset.
-module traversal_stack (
+module traversal_stack #(
+  parameter bit PARITY = 1'b0
+) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
+  input  lod_pkg::memory_test_t test_i,
   input  logic                  clear_i,
   input  logic                  push_i,
   input  lod_pkg::stack_entry_t entry_i,
   input  logic                  pop_i,
   output lod_pkg::stack_entry_t entry_o,
   output logic                  empty_o,
-  output logic                  full_o
+  output logic                  full_o,
+  // How many there are; a word that a memory changed is popped.
+  output logic [$clog2(lod_pkg::STACK_ENTRIES+1)-1:0] length_o,
+  output logic                  fault_o
 );
 
   localparam int unsigned DEPTH = lod_pkg::STACK_ENTRIES;
@@ -23,10 +29,7 @@ module traversal_stack (
   localparam int unsigned LEN_W = $clog2(DEPTH + 1);
   localparam int unsigned INDEX_W = $clog2(DEPTH);
 
-  // On an FPGA not in a block RAM: what comes out of one comes late, and is compared before it is used.
-  (* ram_style = "distributed" *)
-  logic [lod_pkg::KEPT_ENTRY_W-1:0] entries_q [DEPTH];
-  logic [lod_pkg::KEPT_ENTRY_W-1:0] top_q;
+  logic [lod_pkg::KEPT_ENTRY_W-1:0] top_word;
   logic [LEN_W-1:0] len_q;
   logic [LEN_W-1:0] top;
   // Where the top is from the next cycle on, if nothing is pushed in this one.
@@ -37,9 +40,10 @@ module traversal_stack (
   // What is read there while empty, when this wraps, is never used.
   assign top      = len_q - LEN_W'(1);
   assign next_top = INDEX_W'(top) - INDEX_W'(pop_i);
-  assign entry_o  = lod_pkg::whole_entry(top_q);
-  assign empty_o = len_q == '0;
-  assign full_o  = len_q == LEN_W'(DEPTH);
+  assign entry_o  = lod_pkg::whole_entry(top_word);
+  assign empty_o  = len_q == '0;
+  assign full_o   = len_q == LEN_W'(DEPTH);
+  assign length_o = len_q;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) len_q <= '0;
@@ -48,11 +52,14 @@ module traversal_stack (
     else if (pop_i) len_q <= top;
   end
 
-  always_ff @(posedge clk_i) begin
-    if (push_i) entries_q[INDEX_W'(len_q)] <= lod_pkg::keep_entry(entry_i);
-    else if (pop_i || stale_q) top_q <= entries_q[next_top];
-    stale_q <= push_i;
-  end
+  // On an FPGA not in a block RAM: the top is compared before it is used.
+  memory_1w1r #(.W(lod_pkg::KEPT_ENTRY_W), .WORDS(DEPTH), .DISTRIBUTED(1'b1), .PARITY(PARITY)) u_entries (
+    .clk_i, .test_i,
+    .write_i(push_i), .write_place_i(INDEX_W'(len_q)), .data_i(lod_pkg::keep_entry(entry_i)),
+    .read_i(!push_i && (pop_i || stale_q)), .read_place_i(next_top), .use_i(pop_i), .data_o(top_word), .fault_o
+  );
+
+  always_ff @(posedge clk_i) stale_q <= push_i;
 
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin

@@ -6,6 +6,9 @@
 module traversal_unit_axi #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE,
+  parameter bit WATCH = 1'b0,
+  parameter bit MEMORY_PARITY = 1'b0,
+  parameter bit CLOCK_GATES = 1'b0,
   parameter int unsigned DATA_W = 256,
   parameter int unsigned ADDRESS_W = 64
 ) (
@@ -15,6 +18,12 @@ module traversal_unit_axi #(
   input  logic [ADDRESS_W-1:0]          base_i,
   input  logic                          flush_i,
   output logic                          busy_o,
+  input  lod_pkg::memory_test_t         memory_test_i,
+  output logic                          memory_fault_o,
+  input  logic [5:0]                    view_context_i,
+  output lod_pkg::context_view_t        view_o,
+  input  logic                          counters_clear_i,
+  output lod_pkg::unit_counters_t       counters_o,
   input  logic                          valid_i,
   output logic                          ready_o,
   input  lod_pkg::ray_in_t              in_i,
@@ -47,8 +56,11 @@ module traversal_unit_axi #(
   lod_pkg::memory_request_t request;
   lod_pkg::memory_answer_t answer;
 
-  traversal_unit #(.CONTEXTS(CONTEXTS), .EDGES_PER_CYCLE(EDGES_PER_CYCLE)) u_unit (
+  traversal_unit #(
+    .CONTEXTS(CONTEXTS), .EDGES_PER_CYCLE(EDGES_PER_CYCLE), .WATCH(WATCH), .MEMORY_PARITY(MEMORY_PARITY), .CLOCK_GATES(CLOCK_GATES)
+  ) u_unit (
     .clk_i, .rst_ni, .scene_i, .flush_i, .busy_o,
+    .memory_test_i, .memory_fault_o, .view_context_i, .view_o, .counters_clear_i, .counters_o,
     .valid_i, .ready_o, .in_i, .secondary_i,
     .valid_o, .ready_i, .out_o, .corners_o,
     .mem_valid_o(request_valid), .mem_ready_i(request_ready), .mem_o(request),

@@ -91,6 +91,9 @@ async def one_ray(dut) -> None:
     dut.scene_i.value = word["scene_i"]
     dut.base_i.value = BASE
     dut.flush_i.value = 0
+    dut.memory_test_i.value = 0
+    dut.view_context_i.value = 0
+    dut.counters_clear_i.value = 0
     dut.valid_i.value = 0
     dut.ready_i.value = 1
     dut.rst_ni.value = 0

@@ -11,6 +11,7 @@ module context_rules #(
   input  logic                        clk_i,
   input  logic                        rst_ni,
   input  logic                        idle_i,
+  input  logic                        free_i,
   input  logic                        take_i,
   // Blocks in which a context has one operation at most: tree_deciders, ray_setup, child_test, lod_test, tessellate, bary_map; or, for rays from a surface, those in their places.
   input  logic [5:0]                  request_i,
@@ -74,9 +75,9 @@ module context_rules #(
     end
   end
 
-  // A grant answers a request, a result an operation inside, and rays come to idle contexts.
+  // A grant answers a request, a result an operation inside, and rays come to free contexts.
   logic unit_keeps;
-  assign unit_keeps = (grant_i & ~request_i) == '0 && (valid_i & ~inside_q) == '0 && (!take_i || idle_i)
+  assign unit_keeps = (grant_i & ~request_i) == '0 && (valid_i & ~inside_q) == '0 && (!take_i || free_i)
                    && (!line_grant_i || line_request_i) && (!tri_grant_i || tri_request_i) && (!divide_grant_i || divide_request_i) && (!hit_grant_i || hit_request_i)
                    && 3'(tri_miss_i) + 3'(select_valid_i) <= tested_q
                    && (!divide_valid_i || ((divide_valid_what_i != lod_pkg::DIVIDE_FOR_V || v_q) && (divide_valid_what_i != lod_pkg::DIVIDE_FOR_W || (w_q && !v_q))));
@@ -90,8 +91,8 @@ module context_rules #(
   assign four_triangles = tested_q <= 3'd4 && (!tri_request_i || tested_q == '0 || !numbers_q[tri_number_i]);
   // One division for each barycentric, v before w, and neither while triangles are under way.
   assign two_divisions  = !divide_request_i || (tested_q == '0 && !w_q && (divide_what_i == lod_pkg::DIVIDE_FOR_W || (divide_what_i == lod_pkg::DIVIDE_FOR_V && !v_q)));
-  // When its hit goes out, and before a ray comes in, no block has anything of a context.
-  assign ends_clean     = !(hit_request_i || idle_i) || (inside_q == '0 && tested_q == '0 && !v_q && !w_q);
+  // When its hit goes out, and before a ray comes in, no block has anything of a context; one that is free is idle.
+  assign ends_clean     = (!free_i || idle_i) && (!(hit_request_i || idle_i) || (inside_q == '0 && tested_q == '0 && !v_q && !w_q));
 
   always_comb begin
     assume (live_q || !rst_ni);

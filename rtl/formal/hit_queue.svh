@@ -5,6 +5,8 @@
   logic             watching_q;
   logic [LEN_W-1:0] ahead_q;  // items before the watched one
   logic [W-1:0]     watched_q;
+  (* hierconn *) logic [INDEX_W-1:0] \u_items.shown_place , \u_items.other_place ;
+  (* hierconn *) logic [W-1:0] \u_items.shown , \u_items.other ;
   initial live_q = 1'b0;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -29,6 +31,8 @@
     at = INDEX_W'(32'(head_q) + 32'(n) >= DEPTH ? 32'(head_q) + 32'(n) - DEPTH : 32'(head_q) + 32'(n));
   endfunction
 
+  assign {\u_items.shown_place , \u_items.other_place } = {at(ahead_q), head_q};
+
   always_comb begin
     // What the unit keeps to.
     assume (!(push_i && !pop_i && inside_q == LEN_W'(DEPTH)) && !(pop_i && inside_q == '0));
@@ -41,8 +45,8 @@
       // Hold the induction together.
       assert (len_q == inside_q && inside_q <= LEN_W'(DEPTH));
       assert (32'(head_q) < DEPTH && tail_q == at(inside_q));
-      assert (!watching_q || items_q[at(ahead_q)] == watched_q);
-      assert (empty_o || data_o == items_q[head_q]);
+      assert (!watching_q || \u_items.shown  == watched_q);
+      assert (empty_o || data_o == \u_items.other );
     end
     cover (live_q && watching_q && ahead_q == '0 && pop_i && push_i && head_q == LAST);
     cover (live_q && inside_q == LEN_W'(DEPTH) && watching_q && ahead_q == LEN_W'(DEPTH - 1));

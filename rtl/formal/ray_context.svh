@@ -5,7 +5,7 @@
   logic [2:0] tested;
   logic [3:0] numbers;
   context_rules #(.OF_CONTEXT(1)) u_rules (
-    .clk_i, .rst_ni, .idle_i(idle_o), .take_i,
+    .clk_i, .rst_ni, .idle_i(idle_o), .free_i(free_o), .take_i,
     .request_i({decide_request_o, setup_request_o, child_request_o, lod_request_o, morph_request_o, map_request_o}),
     .grant_i({decide_grant_i, setup_grant_i, child_grant_i, lod_grant_i, morph_grant_i, map_grant_i}),
     .valid_i({decide_valid_i, setup_valid_i, child_valid_i, lod_valid_i, morph_valid_i, map_valid_i}),

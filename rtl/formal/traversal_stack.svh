@@ -3,6 +3,10 @@
   logic                  live_q;  // reset has been
   logic [LEN_W-1:0]      depth_q;  // pushes less pops
   lod_pkg::stack_entry_t watched_q;
+  (* hierconn *) logic [INDEX_W-1:0] \u_entries.shown_place , \u_entries.other_place ;
+  (* hierconn *) logic [lod_pkg::KEPT_ENTRY_W-1:0] \u_entries.shown ;
+  assign {\u_entries.shown_place , \u_entries.other_place } = {INDEX_W'(place), INDEX_W'(0)};
+  (* hierconn *) logic [lod_pkg::KEPT_ENTRY_W-1:0] \u_entries.word_q ;
   initial live_q = 1'b0;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -26,8 +30,8 @@
       assert (depth_q != place + LEN_W'(1) || stale_q || entry_o == watched_q);
       // Hold the induction together.
       assert (len_q == depth_q && depth_q <= LEN_W'(DEPTH));
-      assert (depth_q <= place || entries_q[place] == lod_pkg::keep_entry(watched_q));
-      assert (depth_q != place + LEN_W'(1) || stale_q || top_q == lod_pkg::keep_entry(watched_q));
+      assert (depth_q <= place || \u_entries.shown  == lod_pkg::keep_entry(watched_q));
+      assert (depth_q != place + LEN_W'(1) || stale_q || \u_entries.word_q == lod_pkg::keep_entry(watched_q));
     end
     cover (live_q && pop_i && depth_q == place + LEN_W'(1) && place == LEN_W'(3) && watched_q.index == 28'd77);
     cover (live_q && clear_i && depth_q == LEN_W'(2));

@@ -8,10 +8,10 @@
   for (genvar k = 0; k < N; k++) begin : g_rules
     localparam logic [CONTEXT_W-1:0] ME = CONTEXT_W'(k);
     context_rules #(.OF_CONTEXT(0)) u_rules (
-      .clk_i, .rst_ni, .idle_i(idle[k]), .take_i(take[k]),
+      .clk_i, .rst_ni, .idle_i(idle[k]), .free_i(free[k]), .take_i(take[k]),
       .request_i({decide_request[k], setup_request[k], child_request[k], lod_request[k], morph_request[k], map_request[k]}),
       .grant_i({decide_grant[k], setup_grant[k], child_grant[k], lod_grant[k], morph_grant[k], map_grant[k]}),
-      .valid_i({decide_valid && decide_tag == ME, setup_valid && setup_tag == ME, child_valid && child_tag == ME, lod_valid && lod_tag == ME, morph_valid && morph_tag == ME, map_valid && map_tag == ME}),
+      .valid_i({decide_for[k], setup_for[k], child_for[k], lod_for[k], morph_for[k], map_for[k]}),
       .line_request_i(fetch_request[k]), .line_place_i(fetch_data[k][FETCH_W-1]), .epoch_i(fetch_data[k][FETCH_W-2 -: lod_pkg::EPOCH_W]), .line_grant_i(fetch_grant[k]),
       .line_valid_i(mem_valid_i && mem_i.tag[7:2] == 6'(ME)), .line_valid_place_i(mem_i.tag[1:0]), .line_valid_epoch_i(mem_i.epoch),
       .tri_request_i(tri_request[k]), .tri_number_i(tri_data[k][TRI_W-1:TRI_W-2]), .tri_grant_i(tri_grant[k]),
@@ -23,14 +23,14 @@
     );
   end
 
-  // Blocks of which each context has one operation at most, and tri_test.
+  // Blocks of which each context has one operation at most, and tri_test. Of two contexts, the one that a result is for.
   logic [N-1:0] in_setup, in_child, in_lod, in_morph, in_map;
   logic [N-1:0][3:0] in_tri;
-  tagged_block #(.TAGS(N)) u_in_setup (.clk_i, .rst_ni, .live_i(live[0]), .take_i(setup_in_valid && setup_in_ready), .take_tag_i(setup_in_tag), .give_i(setup_valid), .give_tag_i(setup_tag), .inside_o(in_setup));
-  tagged_block #(.TAGS(N)) u_in_child (.clk_i, .rst_ni, .live_i(live[0]), .take_i(child_in_valid && child_in_ready), .take_tag_i(child_in_tag), .give_i(child_valid), .give_tag_i(child_tag), .inside_o(in_child));
-  tagged_block #(.TAGS(N)) u_in_lod (.clk_i, .rst_ni, .live_i(live[0]), .take_i(lod_in_valid && lod_in_ready), .take_tag_i(lod_in_tag), .give_i(lod_valid), .give_tag_i(lod_tag), .inside_o(in_lod));
-  tagged_block #(.TAGS(N)) u_in_morph (.clk_i, .rst_ni, .live_i(live[0]), .take_i(morph_in_valid && morph_in_ready), .take_tag_i(morph_in_tag), .give_i(morph_valid), .give_tag_i(morph_tag), .inside_o(in_morph));
-  tagged_block #(.TAGS(N)) u_in_map (.clk_i, .rst_ni, .live_i(live[0]), .take_i(map_in_valid && map_in_ready), .take_tag_i(map_in_tag), .give_i(map_valid), .give_tag_i(map_tag), .inside_o(in_map));
+  tagged_block #(.TAGS(N)) u_in_setup (.clk_i, .rst_ni, .live_i(live[0]), .take_i(setup_in_valid && setup_in_ready), .take_tag_i(setup_in_tag), .give_i(setup_for != '0), .give_tag_i(CONTEXT_W'(setup_for[N-1])), .inside_o(in_setup));
+  tagged_block #(.TAGS(N)) u_in_child (.clk_i, .rst_ni, .live_i(live[0]), .take_i(child_in_valid && child_in_ready), .take_tag_i(child_in_tag), .give_i(child_for != '0), .give_tag_i(CONTEXT_W'(child_for[N-1])), .inside_o(in_child));
+  tagged_block #(.TAGS(N)) u_in_lod (.clk_i, .rst_ni, .live_i(live[0]), .take_i(lod_in_valid && lod_in_ready), .take_tag_i(lod_in_tag), .give_i(lod_for != '0), .give_tag_i(CONTEXT_W'(lod_for[N-1])), .inside_o(in_lod));
+  tagged_block #(.TAGS(N)) u_in_morph (.clk_i, .rst_ni, .live_i(live[0]), .take_i(morph_in_valid && morph_in_ready), .take_tag_i(morph_in_tag), .give_i(morph_for != '0), .give_tag_i(CONTEXT_W'(morph_for[N-1])), .inside_o(in_morph));
+  tagged_block #(.TAGS(N)) u_in_map (.clk_i, .rst_ni, .live_i(live[0]), .take_i(map_in_valid && map_in_ready), .take_tag_i(map_in_tag), .give_i(map_for != '0), .give_tag_i(CONTEXT_W'(map_for[N-1])), .inside_o(in_map));
   tagged_block #(.TAGS(4 * N), .TAG_W(CONTEXT_W + 2)) u_in_tri (
     .clk_i, .rst_ni, .live_i(live[0]), .take_i(tri_in_valid && tri_in_ready), .take_tag_i({tri_in_tag, tri_in_number}), .give_i(tri_valid), .give_tag_i({tri_owner, tri_number}), .inside_o(in_tri)
   );
@@ -38,7 +38,7 @@
   // Hits in the queue, in the division and in hit_select.
   localparam int unsigned PLACES = 4 * N;
   localparam int unsigned PLACE_W = $clog2(PLACES);
-  (* hierconn *) logic [PLACES-1:0][lod_pkg::KEPT_HIT_W-1:0] \u_queue.items ;
+  (* hierconn *) logic [PLACES-1:0][lod_pkg::KEPT_HIT_W-1:0] \u_queue.u_items.words ;
   (* hierconn *) logic [PLACE_W-1:0] \u_queue.head_q , \u_queue.tail_q ;
   (* hierconn *) logic [$clog2(PLACES+1)-1:0] \u_queue.len_q ;
   (* hierconn *) logic \u_divide.g_copy[0].g_hit_divide.u_hit_divide.busy_q ;
@@ -75,7 +75,7 @@
     in_queue     = '0;
     item         = '0;
     for (int unsigned i = 0; i < PLACES; i++) begin
-      item = lod_pkg::QUEUED_HIT_W'(\u_queue.items [i]);
+      item = lod_pkg::QUEUED_HIT_W'(\u_queue.u_items.words [i]);
       if (32'(PLACE_W'(PLACE_W'(i) - \u_queue.head_q )) < 32'(\u_queue.len_q )) begin
         if (32'(item.owner) >= N) owners_known = 1'b0;
         for (int unsigned k = 0; k < N; k++) if (32'(item.owner) == k) queued[k] = queued[k] + 8'd1;
@@ -93,7 +93,7 @@
     if (live[0]) begin
       assert (owners_known && 32'(\u_queue.len_q ) <= PLACES && \u_queue.tail_q == PLACE_W'(\u_queue.head_q + \u_queue.len_q ));
       assert (32'(\u_queue.len_q ) == 32'(in_queue));
-      assert (queue_empty || kept_head == \u_queue.items [\u_queue.head_q ]);
+      assert (queue_empty || kept_head == \u_queue.u_items.words [\u_queue.head_q ]);
       // What the contexts count is what the blocks have.
       for (int unsigned k = 0; k < N; k++) begin
         assert (inside[k] == {1'b0, in_setup[k], in_child[k], in_lod[k], in_morph[k], in_map[k]});

@@ -37,6 +37,8 @@ module traversal_unit_rules (
   // Rays taken whose hits were not, and by tag the epochs that an answer is due for, also one that never comes.
   logic [31:0]              rays_q;
   logic [255:0]             due_q [256];
+  // How many of these there are.
+  logic [31:0]              answers_due_q;
   // The epoch of the ray that each context asked for last, and the tags of that ray without an answer.
   logic [63:0][7:0]         epochs_q;
   logic [255:0]             asked_q;
@@ -52,7 +54,10 @@ module traversal_unit_rules (
       for (int unsigned k = 0; k < 256; k++) due_q[k] <= '0;
       epochs_q <= '0;
       asked_q <= '0;
+      answers_due_q <= '0;
     end else begin
+      answers_due_q <= answers_due_q + 32'(mem_valid_o && mem_ready_i && !due_q[mem_o.tag][mem_o.epoch])
+                     - 32'(mem_valid_i && mem_ready_o && due_q[answer_tag_i[15:8]][answer_tag_i[7:0]]);
       {ray_waits_q, hit_waits_q, request_waits_q} <= {valid_i && !ready_o, valid_o && !ready_i, mem_valid_o && !mem_ready_i};
       rays_q <= rays_q + 32'(valid_i && ready_o) - 32'(valid_o && ready_i);
       if (mem_valid_i && mem_ready_o) due_q[answer_tag_i[15:8]][answer_tag_i[7:0]] <= 1'b0;
@@ -78,7 +83,8 @@ module traversal_unit_rules (
       assert (!valid_o || rays_q != '0) else $error("out_o: a hit of no ray");
       assert (!valid_o || out_o.error == '0 || (!out_o.found && out_o.hit == '0)) else $error("out_o: an error with a hit");
       assert (busy_o == (rays_q != '0 || mem_valid_o)) else $error("busy_o: high without a ray or a request, or low with one");
-      assert (busy_o || ready_o) else $error("busy_o: low while no ray would be taken");
+      // Contexts that rest take none until the lines that they owe have come.
+      assert (busy_o || ready_o || answers_due_q != '0) else $error("busy_o: low while no ray would be taken");
     end
   end
 

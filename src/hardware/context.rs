@@ -1,7 +1,7 @@
 //! The registers of a ray context (`rtl/ray_context.sv`), one by one.
 
 use super::Hardware;
-use super::ports::{Epoch, HitOut, MemoryAnswer, RayIn, SceneConfig};
+use super::ports::{Epoch, HitOut, MemoryAnswer, Owed, RayIn, SceneConfig};
 use crate::block::{bary_map, child_test, hit_select, lod_test, node_deciders, parts::Registers, ray_setup, tree_deciders};
 use crate::method::Entry;
 use crate::num::{Bary, BoundCode, Cone, Field, Ray, RayT, START_BITS, Wire};
@@ -26,6 +26,8 @@ const SECOND_LINE: u32 = 3 * 3 * 28;
 const STALE: u32 = 1;
 /// Whether a line has corners where there are none.
 const MISPLACED: u32 = 1;
+/// Whether an age has passed since the context rests.
+const RESTED: u32 = 1;
 /// Banks of the memory of split triangles.
 const BANKS: u32 = 3;
 
@@ -156,9 +158,10 @@ impl Hardware {
         (self.waiting(has_levels) + 1).next_power_of_two().ilog2() + STALE
     }
 
-    /// The lines, which of them are wanted and waited for, and whose they are.
+    /// The lines, which of them are wanted and waited for, and whose they are; and what keeps an epoch from coming again too soon.
     fn lines(&self) -> u32 {
-        width(MemoryAnswer::FIELDS, "line") + SECOND_LINE + MISPLACED + 2 * LINES + Epoch::WIDTH
+        let kept = Owed::WIDTH + Epoch::WIDTH + RESTED;
+        width(MemoryAnswer::FIELDS, "line") + SECOND_LINE + MISPLACED + 2 * LINES + Epoch::WIDTH + kept
     }
 
     /// What bounds the ray's way: its error, how many entries it may still visit, and whether a line is late.

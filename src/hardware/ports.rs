@@ -6,6 +6,8 @@ use crate::num::{BoundScale, LineAddress, Point, Ray, RayT, START_BITS, U, wire_
 
 /// Number of a context's rays, modulo 2^8: what tells their lines apart.
 pub type Epoch = U<8>;
+/// Lines that a context's rays have asked for and that have not come: two of each epoch at most.
+pub type Owed = U<10>;
 /// How long a memory line may take.
 pub type AnswerLimit = U<20>;
 
@@ -171,5 +173,85 @@ wire_struct! {
         error: bool,
         /// Its 32 bytes, word 0 first.
         line: [U<64>; 4],
+    }
+}
+
+wire_struct! {
+    /// What the memories of a unit take for test, which mean nothing to what it computes.
+    pub struct MemoryTest {
+        /// Words are written with the wrong parity.
+        flip: bool,
+        /// For the pins of a compiled memory: margins, modes.
+        pins: U<7>,
+    }
+}
+
+wire_struct! {
+    /// What a context is doing: for who looks from outside, at a ray that is stuck too. What the state gives no meaning to is 0.
+    pub struct ContextView {
+        /// Its state.
+        state: U<5>,
+        /// It takes no ray, as lines of a ray with the next one's epoch may still come.
+        rests: bool,
+        /// Number of its ray, or of the one before.
+        epoch: Epoch,
+        /// Lines that it has asked for and that have not come, of rays before too.
+        owed: Owed,
+        /// Lines wanted and not yet asked for, by place.
+        want: U<2>,
+        /// Lines asked for and not there, by place.
+        waiting: U<2>,
+        /// Entries on its stack.
+        stacked: U<7>,
+        /// Tag of its ray.
+        tag: U<32>,
+        /// Why its ray ends early: a code of `ray_error_t`.
+        error: U<3>,
+        /// Kind of the entry under visit.
+        kind: U<2>,
+        /// Its level in its tree.
+        level: U<4>,
+        /// Its index.
+        index: U<28>,
+        /// Entries that the ray may still visit.
+        visits: U<32>,
+        /// Triangles still to be sent.
+        left: U<3>,
+        /// Triangles without a verdict.
+        pending: U<3>,
+    }
+}
+
+wire_struct! {
+    /// What a unit did since its counters were cleared, each modulo 2^32.
+    pub struct UnitCounters {
+        /// Cycles.
+        cycles: U<32>,
+        /// Those in which a ray was under way, or something waited at a port.
+        busy: U<32>,
+        /// Rays taken.
+        rays: U<32>,
+        /// Rays done that met something.
+        hits: U<32>,
+        /// Rays done that met nothing.
+        misses: U<32>,
+        /// Rays that ended early.
+        errors: U<32>,
+        /// Lines asked for.
+        requests: U<32>,
+        /// Lines that came.
+        answers: U<32>,
+        /// Triangles met, as each is compared with the closest.
+        compared: U<32>,
+        /// Cycles in which a ray waited at the port.
+        rays_wait: U<32>,
+        /// Cycles in which a hit waited at the port.
+        hits_wait: U<32>,
+        /// Cycles in which a request waited at the port.
+        requests_wait: U<32>,
+        /// What blocks and ports took from contexts: ray_setup, node_address, child_test, tree_deciders, lod_test, tessellate, tri_test, hit_divide (but for t), bary_map, hits.
+        taken: [U<32>; 10],
+        /// Cycles in which a context asked for each of them and none was served.
+        refused: [U<32>; 10],
     }
 }

@@ -1,6 +1,7 @@
 //! What others build the unit in with: lists of files, a FuseSoC core, constraints, a testbench in Python. Each list names all of `rtl/`, what is made of it is linted, and
 //! the testbench passes.
 
+use lodray_test_support::hardware::SMALL;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tb::Verilator;
@@ -36,8 +37,8 @@ fn every_list_names_every_file_in_order() {
 
 #[test]
 fn constraints_name_every_port() {
-    constraints_name_ports("traversal_unit", 19);
-    constraints_name_ports("traversal_unit_axi", 31);
+    constraints_name_ports("traversal_unit", 25);
+    constraints_name_ports("traversal_unit_axi", 37);
 }
 
 /// The constraints of a top name its ports, so many.
@@ -81,6 +82,48 @@ fn what_fusesoc_makes(target: &str, top: &str) {
     let arguments = ["-F".to_owned(), list.display().to_string()];
     let verilator = Verilator::find().unwrap_or_else(|error| panic!("{error}"));
     verilator.run(top, &arguments).unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// A top with the default's unit and that of another hardware, under names of its own.
+const TWO_UNITS: &str = "`default_nettype none
+
+module two_units (
+  input logic clk_i,
+  input logic rst_ni
+);
+
+  traversal_unit u_default (.clk_i, .rst_ni);
+  small_traversal_unit u_small (.clk_i, .rst_ni);
+
+endmodule
+
+`default_nettype wire
+";
+
+#[test]
+fn units_of_two_hardwares_stand_in_one_design() {
+    let desk = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
+    let (package, top, out) = (desk.path().join("lod_pkg.sv"), desk.path().join("two_units.sv"), desk.path().join("small"));
+    std::fs::write(&package, SMALL.package()).and_then(|()| std::fs::write(&top, TWO_UNITS)).unwrap_or_else(|error| panic!("{error}"));
+    let named = |prefix: &str| {
+        let script = tb::root().join("scripts/named-unit");
+        let out = Command::new(&script).args(["--prefix", prefix, "--package"]).arg(&package).arg("-o").arg(&out).output();
+        let out = out.unwrap_or_else(|error| panic!("{}: {error}", script.display()));
+        (out.status.success(), String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    assert_eq!(named("small_"), (true, String::new()));
+    // The names alone differ.
+    let unit = std::fs::read_to_string(out.join("small_traversal_unit.sv")).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(unit.replace("small_", ""), read("rtl/traversal_unit.sv"));
+    assert!(unit.contains("module small_traversal_unit #(") && unit.contains("small_ray_context #("));
+    // The top leaves all other ports open.
+    let words = ["--lint-only", "-Wall", "-Wno-PINMISSING", "rtl/lint.vlt", "-F", "rtl/files.f", "-F"].map(str::to_owned);
+    let paths = [out.join("files.f"), top].map(|path| path.display().to_string());
+    let arguments = [&words[..], &paths[..], &["--top-module", "two_units"].map(str::to_owned)[..]].concat();
+    let verilator = Verilator::find().unwrap_or_else(|error| panic!("{error}"));
+    verilator.run("two_units", &arguments).unwrap_or_else(|error| panic!("{error}"));
+    let (made, said) = named("1st_");
+    assert!(!made && said.contains("--prefix 1st_"), "{said}");
 }
 
 /// The program that these tests are built with.

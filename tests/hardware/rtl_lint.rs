@@ -56,6 +56,9 @@ fn tops() -> Vec<(String, Vec<(&'static str, u64)>)> {
         ("divide_multiples", "BITS", 3),
         ("traversal_unit", "EDGES_PER_CYCLE", 3),
         ("traversal_unit", "CONTEXTS", 1),
+        ("traversal_unit", "WATCH", 1),
+        ("traversal_unit", "MEMORY_PARITY", 1),
+        ("traversal_unit", "CLOCK_GATES", 1),
         ("axi_read_adapter", "DATA_W", 128),
         ("axi_read_adapter", "DATA_W", 64),
         ("axi_read_adapter", "DATA_W", 32),
@@ -165,7 +168,11 @@ fn no_net_is_implicit() {
 #[test]
 fn a_strict_front_end_takes_every_module() {
     // Slang refuses what Verilator lets pass: a name before its declaration, from which other tools make a net of their own that nothing drives.
-    for options in [&[][..], &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=3"], &["--top", "traversal_unit", "-GCONTEXTS=1"]] {
+    for options in [
+        &[][..],
+        &["--top", "traversal_unit", "-GEDGES_PER_CYCLE=3"],
+        &["--top", "traversal_unit", "-GCONTEXTS=1", "-GWATCH=1", "-GMEMORY_PARITY=1", "-GCLOCK_GATES=1"],
+    ] {
         tb::elaborate(options, &Hardware::default()).unwrap_or_else(|error| panic!("{options:?}: {error}"));
     }
 }
@@ -189,7 +196,9 @@ fn verible_finds_nothing() {
 
 #[test]
 fn yosys_finds_nothing() {
-    for parameters in [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 3)]] {
+    for parameters in
+        [&[("CONTEXTS", 1)][..], &[("CONTEXTS", 2), ("EDGES_PER_CYCLE", 3), ("WATCH", 1), ("MEMORY_PARITY", 1), ("CLOCK_GATES", 1)]]
+    {
         tb::yosys("traversal_unit", parameters, &Hardware::default()).unwrap_or_else(|error| panic!("{parameters:?}: {error}"));
     }
     for parameters in [&[][..], &[("DATA_W", 32), ("ADDRESS_W", 32), ("READS", 7)]] {

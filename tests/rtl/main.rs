@@ -20,6 +20,7 @@ mod hit_divide;
 mod hit_select;
 mod lod_test;
 mod lod_test_by;
+mod memory_1w1r;
 mod narrow_hardware;
 mod node_address;
 mod node_deciders;

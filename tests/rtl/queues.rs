@@ -2,7 +2,8 @@
 
 use crate::draw::Draw;
 use crate::suite::{fail, transactions};
-use lodray::num::U;
+use lodray::hardware::ports::MemoryTest;
+use lodray::num::{U, Wire};
 use std::collections::VecDeque;
 use tb::{Build, Direction, Sim};
 
@@ -73,6 +74,7 @@ fn hit_queue_is_first_in_first_out() {
     let mut sim = Sim::new(&model, seed);
     let input = |name, width| sim.port(name, width, Direction::In).unwrap_or_else(fail);
     let (reset, push, pop, data_i) = (input("rst_ni", 1), input("push_i", 1), input("pop_i", 1), input("data_i", 24));
+    let test = input("test_i", MemoryTest::WIDTH);
     let output = |name, width| sim.port(name, width, Direction::Out).unwrap_or_else(fail);
     let (empty, data_o) = (output("empty_o", 1), output("data_o", 24));
 
@@ -82,6 +84,7 @@ fn hit_queue_is_first_in_first_out() {
     sim.poke(reset, &false);
     sim.poke(push, &false);
     sim.poke(pop, &false);
+    sim.poke(test, &MemoryTest::default());
     sim.clock();
     sim.poke(reset, &true);
     for cycle in 0..transactions() {

@@ -3,6 +3,7 @@
 use crate::draw::Draw;
 use crate::suite::{fail, transactions};
 use lodray::hardware::Hardware;
+use lodray::hardware::ports::MemoryTest;
 use lodray::method::{Entry, Op, TraversalStack};
 use lodray::num::{U, Wire};
 use tb::{Build, Direction, Sim};
@@ -40,6 +41,7 @@ pub fn play(hardware: &Hardware, count: u64) {
     let (clear, push, pop) = (port("clear_i", 1, Direction::In), port("push_i", 1, Direction::In), port("pop_i", 1, Direction::In));
     let (entry_i, entry_o) = (port("entry_i", Entry::WIDTH, Direction::In), port("entry_o", Entry::WIDTH, Direction::Out));
     let (empty, reset) = (port("empty_o", 1, Direction::Out), port("rst_ni", 1, Direction::In));
+    sim.poke(port("test_i", MemoryTest::WIDTH, Direction::In), &MemoryTest::default());
 
     let mut draw = Draw::new(seed);
     let mut stack = TraversalStack::default();

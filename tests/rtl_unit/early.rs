@@ -6,7 +6,7 @@ use lodray::hardware::Hardware;
 use lodray::hardware::ports::SceneConfig;
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, TraversalUnit};
-use lodray_test_support::early::{each_error, each_moment};
+use lodray_test_support::early::{each_error, each_moment, each_rest};
 use lodray_test_support::hostile::{Exposed, Hostile, Stage};
 use lodray_test_support::models::Rng;
 
@@ -41,6 +41,11 @@ fn every_error_is_told_and_the_next_ray_is_right() {
 #[test]
 fn flushes_and_resets_at_any_moment() {
     each_moment(|config, scene| SideBySide::new(config, scene, 1, "every moment".to_owned()), 29);
+}
+
+#[test]
+fn an_epoch_does_not_come_again_while_a_line_of_it_may() {
+    each_rest(|config, scene| SideBySide::new(config, scene, 1, "rest".to_owned()));
 }
 
 fn mischief(lawful: bool, cycles: u64) {

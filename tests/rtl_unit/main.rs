@@ -5,6 +5,7 @@ mod early;
 mod limits;
 mod port;
 mod secondary;
+mod watch;
 mod wave;
 
 use lodray::block::EdgesPerCycle;
@@ -26,7 +27,7 @@ use lodray_test_support::hardware::{
 use lodray_test_support::is_nightly;
 use lodray_test_support::models::{Rng, any_rays, ball, build_with, coarsened, terrain, with_vertices, with_zeros};
 use lodray_test_support::plain::plain;
-use port::Rtl;
+use port::{Rtl, Watched};
 
 /// Model and RTL with the same inputs.
 struct SideBySide {
@@ -36,11 +37,23 @@ struct SideBySide {
     what: String,
     /// Answers may come that no memory gives, so the rules of the ports need not hold.
     any_answer: bool,
+    /// Memories write wrong parities.
+    parity_broken: bool,
+    /// Cycles in which one was used.
+    faults: u64,
 }
 
 impl SideBySide {
     fn new(config: Hardware, scene: &SceneConfig, seed: u64, what: String) -> Self {
-        Self { model: TraversalUnit::new(config, *scene), rtl: Rtl::new(config, scene, seed), cycle: 0, what, any_answer: false }
+        Self {
+            model: TraversalUnit::new(config, *scene),
+            rtl: Rtl::new(config, scene, seed),
+            cycle: 0,
+            what,
+            any_answer: false,
+            parity_broken: false,
+            faults: 0,
+        }
     }
 }
 
@@ -58,12 +71,24 @@ impl UnitPort for SideBySide {
             let (what, cycle, contexts) = (&self.what, self.cycle, self.model.describe());
             panic!("{what}: cycle {cycle}: port {port} differs\nmodel {model:?}\nRTL   {rtl:?}\n{contexts}");
         }
+        // Each context in turn, and a number that none has.
+        let context = self.cycle as usize % (self.model.contexts() + 1);
+        if let Some(rtl) = self.rtl.watched(context) {
+            let model = Watched { view: self.model.view(context), counters: self.model.counters() };
+            assert_eq!(
+                rtl, model,
+                "{}: cycle {}, context {context}: view_o or counters_o differs, right is the model's",
+                self.what, self.cycle
+            );
+        }
         model
     }
 
     fn tick(&mut self, inputs: &Inputs) {
         self.model.tick(inputs);
         self.rtl.tick(inputs);
+        self.faults += u64::from(self.rtl.memory_fault());
+        assert!(self.parity_broken || self.faults == 0, "{}: cycle {}: a memory changed a word", self.what, self.cycle);
         self.cycle += 1;
     }
 

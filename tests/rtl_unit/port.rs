@@ -1,8 +1,10 @@
 //! The RTL of the unit behind the ports of the model.
 
 use lodray::hardware::Hardware;
-use lodray::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
-use lodray::num::Wire;
+use lodray::hardware::ports::{
+    ContextView, Corners, HitOut, MemoryAnswer, MemoryRequest, MemoryTest, RayIn, SceneConfig, SecondaryIn, UnitCounters,
+};
+use lodray::num::{U, Wire};
 use lodray::sim::unit::environment::UnitPort;
 use lodray::sim::unit::{Inputs, Outputs};
 use std::sync::Arc;
@@ -25,7 +27,21 @@ fn model(config: Hardware) -> Arc<Model> {
     // The waveform's test needs units of one context too.
     let traced = Hardware { secondary: config.secondary, ..Hardware::one_context() };
     let build = if config == traced { build.trace() } else { build };
+    let build = if is_bare(config) { build } else { build.parameter("WATCH", 1).parameter("MEMORY_PARITY", 1).parameter("CLOCK_GATES", 1) };
     build.model().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A unit without counters, parity and clock gates: the default, whose netlist runs too, and those of one context. All others have them, and must behave as these do.
+fn is_bare(config: Hardware) -> bool {
+    config == Hardware::default() || config.contexts == 1
+}
+
+/// What a unit shows besides, with `WATCH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watched {
+    /// Of the context that is looked at.
+    pub view: ContextView,
+    pub counters: UnitCounters,
 }
 
 /// The RTL's ports.
@@ -43,6 +59,13 @@ pub struct Rtl {
     hit_ready: PortId,
     mem_ready: PortId,
     answer: (PortId, PortId),
+    memory_test: PortId,
+    fault: PortId,
+    view_context: PortId,
+    view: PortId,
+    clear: PortId,
+    counters: PortId,
+    bare: bool,
 }
 
 impl Rtl {
@@ -65,6 +88,13 @@ impl Rtl {
             hit_ready: input(&sim, "ready_i", 1),
             mem_ready: input(&sim, "mem_ready_i", 1),
             answer: (input(&sim, "mem_valid_i", 1), input(&sim, "mem_i", MemoryAnswer::WIDTH)),
+            memory_test: input(&sim, "memory_test_i", MemoryTest::WIDTH),
+            fault: output(&sim, "memory_fault_o", 1),
+            view_context: input(&sim, "view_context_i", 6),
+            view: output(&sim, "view_o", ContextView::WIDTH),
+            clear: input(&sim, "counters_clear_i", 1),
+            counters: output(&sim, "counters_o", UnitCounters::WIDTH),
+            bare: is_bare(config),
             sim: {
                 let (reset, scene_i) = (input(&sim, "rst_ni", 1), input(&sim, "scene_i", SceneConfig::WIDTH));
                 sim.poke(scene_i, scene);
@@ -74,8 +104,37 @@ impl Rtl {
                 sim
             },
         };
+        rtl.sim.poke(rtl.clear, &false);
+        rtl.memory_parity(true);
         rtl.sim.eval();
         rtl
+    }
+
+    /// What it shows of this context, and its counters; a bare one shows nothing.
+    pub fn watched(&mut self, context: usize) -> Option<Watched> {
+        self.sim.poke(self.view_context, &U::<6>::new(context as u64));
+        self.sim.eval();
+        let watched = Watched { view: self.sim.peek(self.view), counters: self.sim.peek(self.counters) };
+        if self.bare {
+            assert_eq!(watched, Watched { view: ContextView::default(), counters: UnitCounters::default() });
+            return None;
+        }
+        Some(watched)
+    }
+
+    /// Whether memories write the right parity from now on.
+    pub fn memory_parity(&mut self, right: bool) {
+        self.sim.poke(self.memory_test, &MemoryTest { flip: !right, ..MemoryTest::default() });
+    }
+
+    /// `memory_fault_o`.
+    pub fn memory_fault(&mut self) -> bool {
+        self.sim.peek(self.fault)
+    }
+
+    /// `counters_clear_i` in the next cycle, and whether it stands.
+    pub fn clear_counters(&mut self, clears: bool) {
+        self.sim.poke(self.clear, &clears);
     }
 
     /// A cycle of reset.

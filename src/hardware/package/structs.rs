@@ -2,7 +2,9 @@
 
 use crate::block::{self, Block};
 use crate::format::{BvhNode, Displacements, L0Record, ShortDisplacements, SplitRecord, VertexData};
-use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
+use crate::hardware::ports::{
+    ContextView, Corners, HitOut, MemoryAnswer, MemoryRequest, MemoryTest, RayIn, SceneConfig, SecondaryIn, UnitCounters,
+};
 use crate::method::{Entry, Hit};
 use crate::num::{self, Box16, Field, Layout, Wire};
 use std::fmt::Write;
@@ -99,6 +101,9 @@ pub(super) fn all() -> Vec<Struct> {
         of::<HitOut>("hit_out"),
         of::<MemoryRequest>("memory_request"),
         of::<MemoryAnswer>("memory_answer"),
+        of::<MemoryTest>("memory_test"),
+        of::<ContextView>("context_view"),
+        of::<UnitCounters>("unit_counters"),
     ]);
     all
 }

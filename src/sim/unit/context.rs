@@ -10,7 +10,7 @@ use crate::block::bary_map::NodeIndex;
 use crate::block::node_deciders::{self, NodeDeciders};
 use crate::block::{Block, child_test, lod_test, ray_setup, tessellate::child_triangle, tree_deciders};
 use crate::format::{L0Record, VertexData};
-use crate::hardware::ports::{Epoch, RayIn, SceneConfig, SecondaryIn};
+use crate::hardware::ports::{ContextView, Epoch, Owed, RayIn, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, Hardware, RayError, State};
 use crate::method::{Entry, Op, TraversalStack, is_beyond};
 use crate::num::{BoundCode, Point, Ray, S_ONE, U, Wire};
@@ -60,6 +60,12 @@ pub struct Context {
     pub waiting: u8,
     /// Number of the ray among the context's, which its lines come back with.
     pub epoch: Epoch,
+    /// Lines asked for by this ray and those before, and not there.
+    pub owed: Owed,
+    /// Rays before this one since there was none such.
+    pub behind: Epoch,
+    /// An age has passed since the context rests.
+    pub rested: bool,
     /// Why the ray ends early.
     pub error: Option<RayError>,
     /// Entries that it may still visit.
@@ -136,6 +142,7 @@ impl Context {
         let objection = self.objection(me, scene, cycle);
         let (error, stale) = (self.error_after(me, cycle, objection), self.stale_after(me, cycle));
         let arrival = self.arrival(me, cycle).copied();
+        let (owed, rested) = (self.owed_after(me, cycle), self.rests() && (cycle.age || self.rested));
         let stops = self.stops(objection);
         self.error = error;
         if let Some(&quotient) = cycle.divide.result(me)
@@ -157,6 +164,7 @@ impl Context {
                     self.stand_at(Entry::default());
                     self.visits_left.set(scene.visits);
                     self.epoch = Epoch::wrapping(self.epoch.get() + 1);
+                    self.behind = if self.owed == Owed::ZERO { Epoch::ZERO } else { Epoch::wrapping(self.behind.get() + 1) };
                     State::Visit
                 }
                 None => State::SetupWait,
@@ -252,7 +260,54 @@ impl Context {
             self.waiting &= !(1 << place);
         }
         self.stale = stale;
+        (self.owed, self.rested) = (owed, rested);
         self.state = to;
+    }
+
+    /// It takes no ray: with the next one the epoch would be that of a line that may still come.
+    pub fn rests(&self) -> bool {
+        self.state == State::Idle && self.behind == Epoch::MAX && self.owed != Owed::ZERO
+    }
+
+    /// It takes a ray.
+    pub fn is_free(&self) -> bool {
+        self.state == State::Idle && !self.rests()
+    }
+
+    /// Every line is owed until it comes, late or not. What has not come in an age of rest is given up.
+    fn owed_after(&self, me: usize, cycle: &Cycle) -> Owed {
+        if self.rests() && cycle.age && self.rested {
+            return Owed::ZERO;
+        }
+        let come = u64::from(cycle.fetch.result(me).is_some() && self.owed != Owed::ZERO);
+        Owed::wrapping(self.owed.get() + u64::from(cycle.fetch.granted(me)) - come)
+    }
+
+    /// What it is doing, for who looks from outside.
+    pub fn view(&self) -> ContextView {
+        let all = ContextView {
+            state: U::new(self.state as u64),
+            rests: self.rests(),
+            epoch: self.epoch,
+            owed: self.owed,
+            stacked: U::new(self.stack.len() as u64), // 103 at most
+            ..ContextView::default()
+        };
+        if self.state == State::Idle {
+            return all;
+        }
+        let of_ray = ContextView { tag: self.tag, error: RayError::code(self.error), ..all };
+        if matches!(self.state, State::Setup | State::SetupWait | State::Done) {
+            return of_ray;
+        }
+        let (entry, visits) = (self.entry.get(), self.visits_left.get());
+        let (want, waiting) = (U::new(self.want.into()), U::new(self.waiting.into()));
+        let of_entry =
+            ContextView { kind: entry.kind, level: entry.level, index: U::new(entry.index.get()), visits, want, waiting, ..of_ray };
+        match self.state {
+            State::Tri => ContextView { left: self.left.get(), pending: self.pending.get(), ..of_entry },
+            _ => of_entry,
+        }
     }
 
     /// A ray comes. What the one before still waited for comes too late, if at all.

@@ -17,7 +17,9 @@ use crate::block::start_test::{self, StartTest};
 use crate::block::tessellate::Tessellate;
 use crate::block::tree_deciders::TreeDeciders;
 use crate::hardware::Resource;
-use crate::hardware::ports::{Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
+use crate::hardware::ports::{
+    ContextView, Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn, UnitCounters,
+};
 use crate::hardware::{Hardware, State};
 use crate::num::{RayT, U, Wire};
 use std::collections::VecDeque;
@@ -60,6 +62,8 @@ pub struct TraversalUnit {
     pub(super) scene: SceneConfig,
     /// Cycles since the last tick of the limit of answers.
     ticks: u64,
+    /// Ticks since the last age, modulo the epochs.
+    age_ticks: Epoch,
     pub(super) contexts: Vec<Context>,
     arbiters: [Arbiter; Resource::COUNT],
     pub(super) ray_setup: Fitted<StartSetup>,
@@ -81,6 +85,8 @@ pub struct TraversalUnit {
     answer: Option<MemoryAnswer>,
     /// The hit port's register.
     pub(super) hit: Stage<(HitOut, Corners)>,
+    /// `counters_o`.
+    counters: UnitCounters,
     pub(super) cycles: u64,
     pub(super) states: [u64; State::Done as usize + 1],
     pub(super) longest_queue: usize,
@@ -97,6 +103,7 @@ impl TraversalUnit {
             hardware: config,
             scene,
             ticks: 0,
+            age_ticks: Epoch::ZERO,
             contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
             ray_setup: Fitted::linked(&config, config.setup_copies),
@@ -114,6 +121,7 @@ impl TraversalUnit {
             chosen: Register::default(),
             answer: None,
             hit: Stage::default(),
+            counters: UnitCounters::default(),
             cycles: 0,
             states: Default::default(),
             longest_queue: 0,
@@ -140,12 +148,32 @@ impl TraversalUnit {
         };
         let ((hit, corners), mem) = (self.hit.offered().unzip(), self.node_address.offered().map(request));
         Outputs {
-            ready: self.contexts.iter().any(|c| c.state == State::Idle),
+            ready: self.contexts.iter().any(Context::is_free),
             hit,
             corners: corners.filter(|_| self.hardware.secondary).unwrap_or_default(),
             mem,
             busy: self.contexts.iter().any(|c| c.state != State::Idle) || hit.is_some() || mem.is_some(),
         }
+    }
+
+    /// How many contexts it has.
+    pub fn contexts(&self) -> usize {
+        self.contexts.len()
+    }
+
+    /// `view_o` for this context: all 0 if there is none of that number.
+    pub fn view(&self, context: usize) -> ContextView {
+        self.contexts.get(context).map(Context::view).unwrap_or_default()
+    }
+
+    /// `counters_o`.
+    pub fn counters(&self) -> UnitCounters {
+        self.counters
+    }
+
+    /// `counters_clear_i`, in the cycle that has just ended.
+    pub fn clear_counters(&mut self) {
+        self.counters = UnitCounters::default();
     }
 
     /// Tag of the ray that context `context` has, if it is not idle.
@@ -198,7 +226,8 @@ impl TraversalUnit {
             (self.contexts[owner].select_in(scene, tag & 3, out.quotient, front), tag >> 2 & 63)
         });
         Wires {
-            take: inputs.ray.and_then(|_| self.contexts.iter().position(|c| c.state == State::Idle)),
+            asking,
+            take: inputs.ray.and_then(|_| self.contexts.iter().position(Context::is_free)),
             setup: self.link(winner(Resource::Setup), self.ray_setup.ready(), |c, k| (c.setup_in(), k as u16)),
             fetch: self.link(winner(Resource::Fetch), self.node_address.ready(inputs.mem_ready), |c, k| {
                 (c.fetch_in(scene), numbered(k, c.place_of(c.want)) << Epoch::WIDTH | c.epoch.get() as u16)
@@ -219,6 +248,30 @@ impl TraversalUnit {
         }
     }
 
+    /// What the counters see of a cycle.
+    fn count(&mut self, inputs: &Inputs, w: &Wires) {
+        let Outputs { ready, hit, mem, busy, .. } = self.outputs();
+        let done = hit.filter(|_| inputs.hit_ready);
+        let c = &mut self.counters;
+        let add = |count: &mut U<32>, happened: bool| *count = U::wrapping(count.get() + u64::from(happened));
+        add(&mut c.cycles, true);
+        add(&mut c.busy, busy);
+        add(&mut c.rays, inputs.ray.is_some() && ready);
+        add(&mut c.hits, done.is_some_and(|hit| hit.found));
+        add(&mut c.misses, done.is_some_and(|hit| !hit.found && hit.error().is_none()));
+        add(&mut c.errors, done.is_some_and(|hit| hit.error().is_some()));
+        add(&mut c.requests, mem.is_some() && inputs.mem_ready);
+        add(&mut c.answers, inputs.answer.is_some());
+        add(&mut c.compared, w.select.input.is_some());
+        add(&mut c.rays_wait, inputs.ray.is_some() && !ready);
+        add(&mut c.hits_wait, hit.is_some() && !inputs.hit_ready);
+        add(&mut c.requests_wait, mem.is_some() && !inputs.mem_ready);
+        for (k, granted) in w.granted().into_iter().enumerate() {
+            add(&mut c.taken[k], granted.is_some());
+            add(&mut c.refused[k], w.asking[k] != 0 && granted.is_none());
+        }
+    }
+
     fn link<I>(&self, winner: Option<usize>, ready: bool, input: impl FnOnce(&Context, usize) -> (I, u16)) -> Link<I> {
         Link { input: winner.map(|k| input(&self.contexts[k], k)), ready, winner }
     }
@@ -229,6 +282,8 @@ impl TraversalUnit {
         let tri = self.tri_test.offered();
         let divided = self.hit_divide.offered();
         let tick = self.ticks >= self.scene.answer_limit.get();
+        let age = tick && self.age_ticks == Epoch::MAX;
+        self.count(inputs, w);
         let answer = if self.hardware.registers_results() { std::mem::replace(&mut self.answer, inputs.answer) } else { inputs.answer };
         let cycle = Cycle {
             ray: w.take.zip(inputs.ray),
@@ -236,6 +291,7 @@ impl TraversalUnit {
             fits: self.hardware.takes(&self.scene),
             flush: inputs.flush,
             tick,
+            age,
             setup: Served { granted: w.setup.granted(), result: self.ray_setup.offered().map(|(out, tag)| (plain(tag), out)) },
             fetch: Served { granted: w.fetch.granted(), result: answer.map(|a| (a.tag.get() as usize >> 2, a)) }, // 8 bits
             child: Served { granted: w.child.granted(), result: self.child_test.offered().map(|(out, tag)| (plain(tag), out)) },
@@ -260,23 +316,12 @@ impl TraversalUnit {
 
         self.cycles += 1;
         self.ticks = if tick { 0 } else { self.ticks + 1 };
+        self.age_ticks = Epoch::wrapping(self.age_ticks.get() + u64::from(tick));
         for (k, context) in self.contexts.iter_mut().enumerate() {
             self.states[context.state as usize] += 1;
             context.tick(k, &self.scene, &cycle);
         }
-        let grants = [
-            (Resource::Setup, w.setup.granted()),
-            (Resource::Fetch, w.fetch.granted()),
-            (Resource::Child, w.child.granted()),
-            (Resource::Decide, w.decide.granted()),
-            (Resource::Lod, w.lod.granted()),
-            (Resource::Morph, w.morph.granted()),
-            (Resource::Tri, w.tri.granted()),
-            (Resource::Divide, w.divide.granted()),
-            (Resource::Map, w.map.granted()),
-            (Resource::Hit, w.hit.granted()),
-        ];
-        for (resource, granted) in grants {
+        for (resource, granted) in Resource::ALL.into_iter().zip(w.granted()) {
             if let Some(winner) = granted {
                 self.arbiters[resource as usize].took(winner);
             }

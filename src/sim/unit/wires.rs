@@ -5,6 +5,7 @@ use crate::block::{
     bary_map, child_test, hit_divide, hit_select, lod_test, lod_test_by, node_address, ray_setup, start_divide, start_setup, start_test,
     tessellate, tree_deciders,
 };
+use crate::hardware::Resource;
 use crate::hardware::ports::{Corners, HitOut, MemoryAnswer, RayIn, SecondaryIn};
 use crate::num::RayT;
 
@@ -34,6 +35,8 @@ impl<I> Link<I> {
 /// All inputs of blocks, from registers and the ports' inputs.
 #[derive(Clone, Debug)]
 pub struct Wires {
+    /// The contexts that ask for each resource, one bit each.
+    pub asking: [u64; Resource::COUNT],
     /// The context that takes a ray.
     pub take: Option<usize>,
     pub setup: Link<start_setup::In>,
@@ -49,6 +52,25 @@ pub struct Wires {
     pub select: Link<hit_select::In>,
     pub map: Link<bary_map::In>,
     pub hit: Link<(HitOut, Corners)>,
+}
+
+impl Wires {
+    /// The contexts whose requests are taken, in the order of `Resource::ALL`.
+    pub fn granted(&self) -> [Option<usize>; Resource::COUNT] {
+        let Self { setup, fetch, child, decide, lod, morph, tri, divide, map, hit, .. } = self;
+        [
+            setup.granted(),
+            fetch.granted(),
+            child.granted(),
+            decide.granted(),
+            lod.granted(),
+            morph.granted(),
+            tri.granted(),
+            divide.granted(),
+            map.granted(),
+            hit.granted(),
+        ]
+    }
 }
 
 /// A resource as contexts see it: whose request it takes in this cycle, and whose result comes.
@@ -88,6 +110,8 @@ pub struct Cycle {
     pub flush: bool,
     /// The limit of answers has passed since the last one.
     pub tick: bool,
+    /// As many ticks as there are epochs have passed since the last one.
+    pub age: bool,
     pub setup: Served<ray_setup::Out>,
     /// Its results are memory lines.
     pub fetch: Served<MemoryAnswer>,

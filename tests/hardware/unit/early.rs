@@ -2,7 +2,7 @@
 
 use lodray::hardware::{Hardware, RayError};
 use lodray::sim::unit::TraversalUnit;
-use lodray_test_support::early::{each_error, each_moment};
+use lodray_test_support::early::{each_error, each_moment, each_rest};
 use lodray_test_support::hardware::OTHERS;
 use lodray_test_support::hostile::{Hostile, Stage};
 use lodray_test_support::models::Rng;
@@ -15,6 +15,11 @@ fn every_error_is_told_and_the_next_ray_is_right() {
 #[test]
 fn flushes_and_resets_at_every_moment() {
     each_moment(|config, scene| TraversalUnit::new(config, *scene), 1);
+}
+
+#[test]
+fn an_epoch_does_not_come_again_while_a_line_of_it_may() {
+    each_rest(|config, scene| TraversalUnit::new(config, *scene));
 }
 
 #[test]

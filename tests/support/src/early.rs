@@ -6,7 +6,7 @@ use crate::models::{any_rays, ball, terrain, with_vertices};
 use crate::plain::plain;
 use lodray::format::{BvhNode, ChildRef, L0Record, Scene, SplitRecord, VertexData};
 use lodray::golden::exact::Exact;
-use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
+use lodray::hardware::ports::{AnswerLimit, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
@@ -50,11 +50,17 @@ impl Desk {
     }
 }
 
-/// Lines on their way, with the cycles from which on they come.
-#[derive(Default)]
+/// Lines on their way, with the cycles from which on they come, and how long one takes.
 struct Due {
     now: u64,
+    latency: u64,
     lines: Vec<(u64, MemoryAnswer)>,
+}
+
+impl Default for Due {
+    fn default() -> Self {
+        Self { now: 0, latency: LATENCY, lines: Vec::new() }
+    }
 }
 
 /// One cycle of a memory that makes of a line what `of` says: the hit that is taken, and whether the ray was.
@@ -71,7 +77,7 @@ fn cycle<E: Exposed>(
     if let Some(request) = outputs.mem
         && let Some((line, error)) = of(&request)
     {
-        due.lines.push((due.now + LATENCY, MemoryAnswer { tag: request.tag, epoch: request.epoch, error, line }));
+        due.lines.push((due.now + due.latency, MemoryAnswer { tag: request.tag, epoch: request.epoch, error, line }));
     }
     unit.tick(&Inputs { ray, hit_ready: true, mem_ready: true, answer, flush, secondary: SecondaryIn::primary() });
     due.now += 1;
@@ -286,5 +292,48 @@ pub fn each_moment<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E
         assert!(!unit.outputs().busy, "busy behind a reset");
         right(&mut unit, &desk, second, &mut due);
         settle(&mut unit, &mut due);
+    }
+}
+
+/// A line that comes only when the number of its ray would come again, or never: until then its context takes all other rays, and then none.
+pub fn each_rest<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E) {
+    const EPOCHS: u64 = 1 << Epoch::WIDTH;
+    const SHORT_LIMIT: u64 = 15;
+    let desk = Desk::of(Hardware::one_context(), with_vertices(VertexForm::Compact, ball(2, 0.4, 1)));
+    // One that meets nothing is soon done.
+    let [x, y, z] = desk.rays[0].direction.get().map(|c| S::new(-c));
+    let away = Ray { direction: Vec3 { x, y, z }, ..desk.rays[0] };
+    let age = EPOCHS * (SHORT_LIMIT + 1);
+    for comes in [true, false] {
+        let mut unit = make(desk.config, &SceneConfig { answer_limit: AnswerLimit::new(SHORT_LIMIT), ..desk.scene() });
+        let (mut due, mut withheld) = (Due { latency: 2, ..Due::default() }, None);
+        let (hit, _) = trace(&mut unit, &desk.rays[0], &mut due, None, |request| {
+            withheld = Some(*request);
+            None
+        });
+        assert_eq!(hit.error(), Some(RayError::Late));
+        let MemoryRequest { tag, epoch, .. } = withheld.expect("a request");
+        let mut rays = 0;
+        while unit.outputs().ready {
+            right(&mut unit, &desk, &away, &mut due);
+            settle(&mut unit, &mut due);
+            rays += 1;
+        }
+        // With the next one the epoch would be the line's.
+        assert_eq!(rays, EPOCHS - 1);
+        let from = due.now;
+        if comes {
+            due.lines.push((from + 100, MemoryAnswer { tag, epoch, error: false, line: [U::MAX; 4] }));
+        }
+        while !unit.outputs().ready {
+            cycle(&mut unit, None, false, &mut due, &mut |_| None);
+            assert!(due.now - from <= 2 * age, "it takes no ray again");
+        }
+        let rested = due.now - from;
+        println!("a line that {}: {rays} rays, then {rested} cycles of rest", if comes { "comes" } else { "never comes" });
+        assert!(if comes { rested == 101 } else { (age..2 * age).contains(&rested) });
+        for ray in &desk.rays[..3] {
+            right(&mut unit, &desk, ray, &mut due);
+        }
     }
 }

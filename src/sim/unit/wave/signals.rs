@@ -185,6 +185,9 @@ fn context_signals(c: &Context, to: &mut impl Visitor) {
     to.signal("want_q", Vector::number(c.want.into(), 2));
     to.signal("waiting_q", Vector::number(c.waiting.into(), 2));
     to.signal("epoch_q", Vector::of(&c.epoch));
+    to.signal("owed_q", Vector::of(&c.owed));
+    to.signal("behind_q", Vector::of(&c.behind));
+    to.signal("rested_q", Vector::flag(c.rested));
     to.signal("visits_q", Vector::register(c.visits_left.known()));
     typed::<child_test::Out>(to, "sorted_q", &Vector::register(c.sorted.known()));
     to.signal("count_q", Vector::register(c.count.known()));
