@@ -31,7 +31,6 @@ module setup_copies #(
 
   logic [COPIES-1:0]        turn, ready, valid;
   logic [COPIES-1:0][W-1:0] made;
-  logic [W-1:0]             chosen;
 
   for (genvar k = 0; k < COPIES; k++) begin : g_copy
     lod_pkg::ray_setup_out_t out;
@@ -55,26 +54,10 @@ module setup_copies #(
     end
   end
 
-  if (COPIES == 1) begin : g_alone
-    assign {turn, ready_o, chosen} = {1'b1, ready, made[0]};
-  end else begin : g_turns
-    copy_turns #(.COPIES(COPIES), .LATENCY(LATENCY)) u_turns (.clk_i, .rst_ni, .valid_i, .ready_o, .turn_o(turn));
-
-    // No two give a result at a time.
-    always_comb begin
-      chosen = '0;
-      for (int unsigned k = 0; k < COPIES; k++) begin
-        chosen = chosen | (made[k] & {W{valid[k]}});
-      end
-    end
-
-    always_ff @(posedge clk_i) begin
-      if (rst_ni) assert (!(valid_i && ready_o) || (turn & ready) != '0);
-    end
-  end
-
-  assign valid_o        = valid != '0;
-  assign {out_o, tag_o} = chosen;
+  copy_turns #(.COPIES(COPIES), .LATENCY(LATENCY), .W(W)) u_turns (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .turn_o(turn),
+    .ready_i(ready), .made_valid_i(valid), .made_i(made), .made_valid_o(valid_o), .made_o({out_o, tag_o})
+  );
 
 endmodule
 

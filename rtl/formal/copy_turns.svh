@@ -14,6 +14,8 @@
 
   always_comb begin
     assume (live_q || !rst_ni);
+    // A copy that holds nothing can take an item.
+    for (int unsigned k = 0; k < COPIES; k++) assume (left_q[k] != '0 || ready_i[k]);
     if (live_q) begin
       // One copy has its turn, and it can take the item.
       assert (turn_o != '0 && (turn_o & (turn_o - COPIES'(1))) == '0);
@@ -23,11 +25,11 @@
         for (int unsigned other = 0; other < COPIES; other++) assert (k == other || left_q[k] == '0 || left_q[k] != left_q[other]);
       end
       // Together they take an item every INTERVAL cycles, and no sooner: the one before is as long ago.
-      assert (32'(wait_q) < INTERVAL);
+      assert (32'(g_turns.wait_q) < INTERVAL);
       // Holds the induction together: who took an item `age` turns ago is as many intervals ahead of who would take one now, and of who took one later.
       for (int unsigned k = 0; k < COPIES; k++) begin
         for (int unsigned age = 1; age <= COPIES; age++) begin
-          assert (!turn_o[(k + age) % COPIES] || left_q[k] == '0 || 32'(left_q[k]) + age * INTERVAL <= LATENCY + 32'(wait_q));
+          assert (!turn_o[(k + age) % COPIES] || left_q[k] == '0 || 32'(left_q[k]) + age * INTERVAL <= LATENCY + 32'(g_turns.wait_q));
           for (int unsigned later = 1; later < age; later++) begin
             assert (!turn_o[(k + age) % COPIES] || left_q[k] == '0 || left_q[k] + AGE_W'((age - later) * INTERVAL) <= left_q[(k + age - later) % COPIES]);
           end

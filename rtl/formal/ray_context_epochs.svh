@@ -37,6 +37,7 @@
       assert (!line_valid_i || !is_watched || arrived == '0 || watched_number_q == ray_number_q);
       // Hold the induction together.
       assert (owed_q == others_q + lod_pkg::OWED_W'(watching_q));
+      assert (!watching_q || others_q != '1);
       assert (owed_q <= {1'b0, behind_q, 1'b0} + lod_pkg::OWED_W'(2));
       if (traverses) assert (owed_q <= {1'b0, behind_q, 1'b0} + lod_pkg::OWED_W'(waited_for));
       if (state_q == lod_pkg::SETUP || state_q == lod_pkg::SETUP_WAIT) assert (behind_q != '1 || owed_q == '0);

@@ -24,13 +24,17 @@
   end
 
   // Blocks of which each context has one operation at most, and tri_test. Of two contexts, the one that a result is for.
+  logic setup_given, child_given, lod_given, morph_given, map_given;
+  logic [CONTEXT_W-1:0] setup_owner, child_owner, lod_owner, morph_owner, map_owner;
+  assign {setup_given, child_given, lod_given, morph_given, map_given} = {setup_for != '0, child_for != '0, lod_for != '0, morph_for != '0, map_for != '0};
+  assign {setup_owner, child_owner, lod_owner, morph_owner, map_owner} = {CONTEXT_W'(setup_for[1]), CONTEXT_W'(child_for[1]), CONTEXT_W'(lod_for[1]), CONTEXT_W'(morph_for[1]), CONTEXT_W'(map_for[1])};
   logic [N-1:0] in_setup, in_child, in_lod, in_morph, in_map;
   logic [N-1:0][3:0] in_tri;
-  tagged_block #(.TAGS(N)) u_in_setup (.clk_i, .rst_ni, .live_i(live[0]), .take_i(setup_in_valid && setup_in_ready), .take_tag_i(setup_in_tag), .give_i(setup_for != '0), .give_tag_i(CONTEXT_W'(setup_for[N-1])), .inside_o(in_setup));
-  tagged_block #(.TAGS(N)) u_in_child (.clk_i, .rst_ni, .live_i(live[0]), .take_i(child_in_valid && child_in_ready), .take_tag_i(child_in_tag), .give_i(child_for != '0), .give_tag_i(CONTEXT_W'(child_for[N-1])), .inside_o(in_child));
-  tagged_block #(.TAGS(N)) u_in_lod (.clk_i, .rst_ni, .live_i(live[0]), .take_i(lod_in_valid && lod_in_ready), .take_tag_i(lod_in_tag), .give_i(lod_for != '0), .give_tag_i(CONTEXT_W'(lod_for[N-1])), .inside_o(in_lod));
-  tagged_block #(.TAGS(N)) u_in_morph (.clk_i, .rst_ni, .live_i(live[0]), .take_i(morph_in_valid && morph_in_ready), .take_tag_i(morph_in_tag), .give_i(morph_for != '0), .give_tag_i(CONTEXT_W'(morph_for[N-1])), .inside_o(in_morph));
-  tagged_block #(.TAGS(N)) u_in_map (.clk_i, .rst_ni, .live_i(live[0]), .take_i(map_in_valid && map_in_ready), .take_tag_i(map_in_tag), .give_i(map_for != '0), .give_tag_i(CONTEXT_W'(map_for[N-1])), .inside_o(in_map));
+  tagged_block #(.TAGS(N)) u_in_setup (.clk_i, .rst_ni, .live_i(live[0]), .take_i(setup_in_valid && setup_in_ready), .take_tag_i(setup_in_tag), .give_i(setup_given), .give_tag_i(setup_owner), .inside_o(in_setup));
+  tagged_block #(.TAGS(N)) u_in_child (.clk_i, .rst_ni, .live_i(live[0]), .take_i(child_in_valid && child_in_ready), .take_tag_i(child_in_tag), .give_i(child_given), .give_tag_i(child_owner), .inside_o(in_child));
+  tagged_block #(.TAGS(N)) u_in_lod (.clk_i, .rst_ni, .live_i(live[0]), .take_i(lod_in_valid && lod_in_ready), .take_tag_i(lod_in_tag), .give_i(lod_given), .give_tag_i(lod_owner), .inside_o(in_lod));
+  tagged_block #(.TAGS(N)) u_in_morph (.clk_i, .rst_ni, .live_i(live[0]), .take_i(morph_in_valid && morph_in_ready), .take_tag_i(morph_in_tag), .give_i(morph_given), .give_tag_i(morph_owner), .inside_o(in_morph));
+  tagged_block #(.TAGS(N)) u_in_map (.clk_i, .rst_ni, .live_i(live[0]), .take_i(map_in_valid && map_in_ready), .take_tag_i(map_in_tag), .give_i(map_given), .give_tag_i(map_owner), .inside_o(in_map));
   tagged_block #(.TAGS(4 * N), .TAG_W(CONTEXT_W + 2)) u_in_tri (
     .clk_i, .rst_ni, .live_i(live[0]), .take_i(tri_in_valid && tri_in_ready), .take_tag_i({tri_in_tag, tri_in_number}), .give_i(tri_valid), .give_tag_i({tri_owner, tri_number}), .inside_o(in_tri)
   );
