@@ -41,7 +41,8 @@ package lod_pkg;
   localparam int unsigned BOUND_W = 33;                                         // |q - m| < 2^32.8
   localparam int unsigned LINE_ADDRESS_W = 36;                                  // 2 TiB of 32-byte lines
   localparam int unsigned EPOCH_W = 8;                                          // of the number of a context's ray, which its lines come back with
-  localparam int unsigned OWED_W = 10;                                          // of the number of lines that a context has asked for and that have not come
+  localparam int unsigned BEHIND_W = 4;                                         // of the number of rays that a context takes while it is owed lines, and of ticks in an age
+  localparam int unsigned OWED_W = 6;                                           // of the number of lines that a context has asked for and that have not come
   localparam int unsigned ANSWER_LIMIT_W = 20;                                  // of the cycles after which a line may be late
   localparam int unsigned NODE_INDEX_W = 20;                                    // of a node at the ports: 4^10 nodes on the last level that there can be
   localparam int unsigned FULL_ID_W = 48;                                       // 28 bits of tree, 2 of each of ten levels
@@ -942,7 +943,7 @@ package lod_pkg;
   // What a context is doing: for who looks from outside, at a ray that is stuck too. What the state gives no meaning to is 0.
   typedef struct packed {
     logic [4:0] state;          // Its state.
-    logic rests;                // It takes no ray, as lines of a ray with the next one's epoch may still come.
+    logic rests;                // It takes no ray before the lines that it is owed have come.
     logic [EPOCH_W-1:0] epoch;  // Number of its ray, or of the one before.
     logic [OWED_W-1:0] owed;    // Lines that it has asked for and that have not come, of rays before too.
     logic [1:0] want;           // Lines wanted and not yet asked for, by place.

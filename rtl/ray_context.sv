@@ -8,13 +8,14 @@
 /// Only states, bits that ask for something, and what counts rays and lines are reset.
 /// What happens in a cycle, and which registers it writes, is said once, in "Steps"; everything behind it is these registers.
 module ray_context #(
+  parameter bit WATCH = 1'b0,
   parameter bit MEMORY_PARITY = 1'b0
 ) (
   input  logic                             clk_i,
   input  logic                             rst_ni,
   input  lod_pkg::memory_test_t            memory_test_i,
   input  lod_pkg::scene_config_t           scene_i,
-  // The scene is one for this hardware; every ray under way ends; the limit of answers has passed since the last tick; and as many ticks as there are epochs since the last age.
+  // The scene is one for this hardware; every ray under way ends; the limit of answers has passed since the last tick; and an age of ticks since the last one.
   input  logic                             fits_i,
   input  logic                             flush_i,
   input  logic                             tick_i,
@@ -160,7 +161,7 @@ module ray_context #(
   logic [lod_pkg::EPOCH_W-1:0] epoch_q;
   // Lines asked for by this ray and those before, and not there; rays before this one since there was none such; whether an age has passed since the context rests.
   logic [lod_pkg::OWED_W-1:0]  owed_q;
-  logic [lod_pkg::EPOCH_W-1:0] behind_q;
+  logic [lod_pkg::BEHIND_W-1:0] behind_q;
   logic                        rested_q;
   lod_pkg::ray_error_t         error_q;
   logic [31:0]                 visits_q;
@@ -293,7 +294,7 @@ module ray_context #(
 
   // ---- Requests ----
 
-  // With the next ray the epoch would be that of a line that may still come.
+  // Long before an epoch comes again while a line of it may.
   logic rests;
   assign idle_o = state_q == lod_pkg::IDLE;
   assign rests  = idle_o && behind_q == '1 && owed_q != '0;
@@ -674,7 +675,7 @@ module ray_context #(
       behind_q <= '0;
     end else if (setup_valid_i) begin
       epoch_q  <= epoch_q + lod_pkg::EPOCH_W'(1);
-      behind_q <= owed_q == '0 ? '0 : behind_q + lod_pkg::EPOCH_W'(1);
+      behind_q <= owed_q == '0 ? '0 : behind_q + lod_pkg::BEHIND_W'(1);
     end
   end
 
@@ -975,33 +976,39 @@ module ray_context #(
 
   // ---- What it is doing ----
 
-  // Behind its setup a ray has an entry under visit, unless it ended before.
-  logic has_entry;
-  assign has_entry = state_q > lod_pkg::SETUP_WAIT && state_q != lod_pkg::DONE;
+  if (WATCH) begin : g_view
+    // Behind its setup a ray has an entry under visit, unless it ended before.
+    logic has_entry;
+    assign has_entry = state_q > lod_pkg::SETUP_WAIT && state_q != lod_pkg::DONE;
 
-  always_comb begin
-    view_o         = '0;
-    view_o.state   = state_q;
-    view_o.rests   = rests;
-    view_o.epoch   = epoch_q;
-    view_o.owed    = owed_q;
-    view_o.stacked   = 7'(stack_length);
-    if (!idle_o) begin
-      view_o.tag   = tag_q;
-      view_o.error = error_q;
+    always_comb begin
+      view_o         = '0;
+      view_o.state   = state_q;
+      view_o.rests   = rests;
+      view_o.epoch   = epoch_q;
+      view_o.owed    = owed_q;
+      view_o.stacked = 7'(stack_length);
+      if (!idle_o) begin
+        view_o.tag   = tag_q;
+        view_o.error = error_q;
+      end
+      if (has_entry) begin
+        view_o.kind    = entry.kind;
+        view_o.level   = entry.level;
+        view_o.index   = entry.index;
+        view_o.visits  = visits_q;
+        view_o.want    = want_q;
+        view_o.waiting = waiting_q;
+      end
+      if (state_q == lod_pkg::TRI) begin
+        view_o.left    = left_q;
+        view_o.pending = pending_q;
+      end
     end
-    if (has_entry) begin
-      view_o.kind    = entry.kind;
-      view_o.level   = entry.level;
-      view_o.index   = entry.index;
-      view_o.visits  = visits_q;
-      view_o.want    = want_q;
-      view_o.waiting = waiting_q;
-    end
-    if (state_q == lod_pkg::TRI) begin
-      view_o.left    = left_q;
-      view_o.pending = pending_q;
-    end
+  end else begin : g_no_view
+    logic unused_length;
+    assign unused_length = ^stack_length;
+    assign view_o        = '0;
   end
 
   assign fault_o = stack_fault || splits_fault;

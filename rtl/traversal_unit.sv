@@ -80,16 +80,16 @@ module traversal_unit #(
   logic [lod_pkg::ANSWER_LIMIT_W-1:0] ticks_q;
   assign tick = ticks_q >= scene_i.answer_limit;
 
-  // An age is as many ticks as there are epochs: what a context rests for has come by then, or comes no more.
-  logic                        age;
-  logic [lod_pkg::EPOCH_W-1:0] age_ticks_q;
+  // An age of ticks: what a context rests for has come by then, or comes no more.
+  logic                         age;
+  logic [lod_pkg::BEHIND_W-1:0] age_ticks_q;
   assign age = tick && age_ticks_q == '1;
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni || tick) ticks_q <= '0;
     else ticks_q <= ticks_q + lod_pkg::ANSWER_LIMIT_W'(1);
     if (!rst_ni) age_ticks_q <= '0;
-    else if (tick) age_ticks_q <= age_ticks_q + lod_pkg::EPOCH_W'(1);
+    else if (tick) age_ticks_q <= age_ticks_q + lod_pkg::BEHIND_W'(1);
   end
 
   // ---- Requests of the contexts, and the winners' operands ----
@@ -575,7 +575,7 @@ module traversal_unit #(
     assign line_comes = line_valid && line.tag[7:2] == 6'(ME);
     clock_gate #(.GATED(CLOCK_GATES)) u_clock (.clk_i, .enable_i(!rst_ni || !idle[k] || !free[k] || take[k] || line_comes), .clk_o(context_clk));
 
-    ray_context #(.MEMORY_PARITY(MEMORY_PARITY)) u_context (
+    ray_context #(.WATCH(WATCH), .MEMORY_PARITY(MEMORY_PARITY)) u_context (
       .clk_i(context_clk), .rst_ni, .memory_test_i, .scene_i, .fits_i(fits), .flush_i, .tick_i(tick), .age_i(age),
       .view_o(views[k]), .fault_o(context_faults[k]),
       .idle_o(idle[k]), .free_o(free[k]), .take_i(take[k]), .ray_i(in_i), .secondary_i,

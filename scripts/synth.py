@@ -79,8 +79,8 @@ def parse():
     if options.no_fpga and options.no_gates:
         parser.error("--no-fpga and --no-gates leave nothing")
     of_whole = options.block == [blocks.WHOLE]
-    if options.doc and not of_whole and (options.no_place or options.no_fpga or options.no_gates):
-        parser.error("--doc writes whole rows of the table: leave nothing out")
+    if options.doc and not of_whole and (options.no_fpga or options.no_gates):
+        parser.error("--doc writes whole rows of the table: leave nothing out but the clock (--no-place), which is a dash then")
     if options.doc and not of_whole:
         rows = {block.name for block in blocks.every()} - {blocks.WHOLE}
         others = [block.name for block in blocks.chosen(options.block) if block.name not in rows]

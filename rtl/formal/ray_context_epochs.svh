@@ -38,8 +38,8 @@
       // Hold the induction together.
       assert (owed_q == others_q + lod_pkg::OWED_W'(watching_q));
       assert (!watching_q || others_q != '1);
-      assert (owed_q <= {1'b0, behind_q, 1'b0} + lod_pkg::OWED_W'(2));
-      if (traverses) assert (owed_q <= {1'b0, behind_q, 1'b0} + lod_pkg::OWED_W'(waited_for));
+      assert (owed_q <= lod_pkg::OWED_W'({behind_q, 1'b0}) + lod_pkg::OWED_W'(2));
+      if (traverses) assert (owed_q <= lod_pkg::OWED_W'({behind_q, 1'b0}) + lod_pkg::OWED_W'(waited_for));
       if (state_q == lod_pkg::SETUP || state_q == lod_pkg::SETUP_WAIT) assert (behind_q != '1 || owed_q == '0);
       if (watching_q) assert (between <= 16'(behind_q) && epoch_q - watched_epoch_q == between[lod_pkg::EPOCH_W-1:0]);
     end

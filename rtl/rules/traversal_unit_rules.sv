@@ -83,7 +83,7 @@ module traversal_unit_rules (
       assert (!valid_o || rays_q != '0) else $error("out_o: a hit of no ray");
       assert (!valid_o || out_o.error == '0 || (!out_o.found && out_o.hit == '0)) else $error("out_o: an error with a hit");
       assert (busy_o == (rays_q != '0 || mem_valid_o)) else $error("busy_o: high without a ray or a request, or low with one");
-      // Contexts that rest take none until the lines that they owe have come.
+      // Contexts that rest take none until the lines that they are owed have come.
       assert (busy_o || ready_o || answers_due_q != '0) else $error("busy_o: low while no ray would be taken");
     end
   end

@@ -1,7 +1,7 @@
 //! The registers of a ray context (`rtl/ray_context.sv`), one by one.
 
 use super::Hardware;
-use super::ports::{Epoch, HitOut, MemoryAnswer, Owed, RayIn, SceneConfig};
+use super::ports::{Behind, Epoch, HitOut, MemoryAnswer, Owed, RayIn, SceneConfig};
 use crate::block::{bary_map, child_test, hit_select, lod_test, node_deciders, parts::Registers, ray_setup, tree_deciders};
 use crate::method::Entry;
 use crate::num::{Bary, BoundCode, Cone, Field, Ray, RayT, START_BITS, Wire};
@@ -160,7 +160,7 @@ impl Hardware {
 
     /// The lines, which of them are wanted and waited for, and whose they are; and what keeps an epoch from coming again too soon.
     fn lines(&self) -> u32 {
-        let kept = Owed::WIDTH + Epoch::WIDTH + RESTED;
+        let kept = Owed::WIDTH + Behind::WIDTH + RESTED;
         width(MemoryAnswer::FIELDS, "line") + SECOND_LINE + MISPLACED + 2 * LINES + Epoch::WIDTH + kept
     }
 

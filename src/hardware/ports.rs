@@ -6,8 +6,10 @@ use crate::num::{BoundScale, LineAddress, Point, Ray, RayT, START_BITS, U, wire_
 
 /// Number of a context's rays, modulo 2^8: what tells their lines apart.
 pub type Epoch = U<8>;
-/// Lines that a context's rays have asked for and that have not come: two of each epoch at most.
-pub type Owed = U<10>;
+/// Rays that a context may take while it is owed lines, far fewer than there are epochs; and ticks of the limit of answers in an age.
+pub type Behind = U<4>;
+/// Lines that a context's rays have asked for and that have not come: two of each of these rays at most, and of the one before.
+pub type Owed = U<6>;
 /// How long a memory line may take.
 pub type AnswerLimit = U<20>;
 
@@ -191,7 +193,7 @@ wire_struct! {
     pub struct ContextView {
         /// Its state.
         state: U<5>,
-        /// It takes no ray, as lines of a ray with the next one's epoch may still come.
+        /// It takes no ray before the lines that it is owed have come.
         rests: bool,
         /// Number of its ray, or of the one before.
         epoch: Epoch,

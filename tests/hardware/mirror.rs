@@ -132,6 +132,10 @@ fn the_unit_has_the_ports_of_the_cycle_model() {
         typed,
         [
             ("scene_i", "lod_pkg::scene_config_t"),
+            ("memory_test_i", "lod_pkg::memory_test_t"),
+            ("view_context_i", "logic[5:0]"),
+            ("view_o", "lod_pkg::context_view_t"),
+            ("counters_o", "lod_pkg::unit_counters_t"),
             ("in_i", "lod_pkg::ray_in_t"),
             ("secondary_i", "lod_pkg::secondary_in_t"),
             ("out_o", "lod_pkg::hit_out_t"),
@@ -141,7 +145,7 @@ fn the_unit_has_the_ports_of_the_cycle_model() {
         ]
     );
     let names: Vec<_> = unit.parameters.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["CONTEXTS", "EDGES_PER_CYCLE"]);
+    assert_eq!(names, ["CONTEXTS", "EDGES_PER_CYCLE", "WATCH", "MEMORY_PARITY", "CLOCK_GATES"]);
 }
 
 #[test]

@@ -28,7 +28,7 @@ use crate::block::tree_deciders::{Decider, TreeDeciders};
 use crate::block::tri_test::{EdgeFunction, TNumerator, TriTest};
 use crate::block::{Block, EdgesPerCycle, Form, Operation, parts};
 use crate::hardware::Hardware;
-use crate::hardware::ports::{AnswerLimit, Epoch, Owed};
+use crate::hardware::ports::{AnswerLimit, Behind, Epoch, Owed};
 use crate::num::{
     BOX_SHIFT, Bary, BoundCode, COORD_LIMIT, EdgeState, LineAddress, MAX_BOUND_OFFSET, RayT, S_ONE, START_BITS, T_NEAR_TO_T_SHIFT, TNear,
     Wire,
@@ -137,6 +137,7 @@ pub(super) fn print(hardware: &Hardware, out: &mut String) {
         .put("BOUND_W", Bound::WIDTH, "|q - m| < 2^32.8")
         .put("LINE_ADDRESS_W", LineAddress::WIDTH, "2 TiB of 32-byte lines")
         .put("EPOCH_W", Epoch::WIDTH, "of the number of a context's ray, which its lines come back with")
+        .put("BEHIND_W", Behind::WIDTH, "of the number of rays that a context takes while it is owed lines, and of ticks in an age")
         .put("OWED_W", Owed::WIDTH, "of the number of lines that a context has asked for and that have not come")
         .put("ANSWER_LIMIT_W", AnswerLimit::WIDTH, "of the cycles after which a line may be late")
         .put("NODE_INDEX_W", NodeIndex::WIDTH, "of a node at the ports: 4^10 nodes on the last level that there can be")

@@ -10,7 +10,7 @@ use crate::block::bary_map::NodeIndex;
 use crate::block::node_deciders::{self, NodeDeciders};
 use crate::block::{Block, child_test, lod_test, ray_setup, tessellate::child_triangle, tree_deciders};
 use crate::format::{L0Record, VertexData};
-use crate::hardware::ports::{ContextView, Epoch, Owed, RayIn, SceneConfig, SecondaryIn};
+use crate::hardware::ports::{Behind, ContextView, Epoch, Owed, RayIn, SceneConfig, SecondaryIn};
 use crate::hardware::{Fetch, Hardware, RayError, State};
 use crate::method::{Entry, Op, TraversalStack, is_beyond};
 use crate::num::{BoundCode, Point, Ray, S_ONE, U, Wire};
@@ -63,7 +63,7 @@ pub struct Context {
     /// Lines asked for by this ray and those before, and not there.
     pub owed: Owed,
     /// Rays before this one since there was none such.
-    pub behind: Epoch,
+    pub behind: Behind,
     /// An age has passed since the context rests.
     pub rested: bool,
     /// Why the ray ends early.
@@ -164,7 +164,7 @@ impl Context {
                     self.stand_at(Entry::default());
                     self.visits_left.set(scene.visits);
                     self.epoch = Epoch::wrapping(self.epoch.get() + 1);
-                    self.behind = if self.owed == Owed::ZERO { Epoch::ZERO } else { Epoch::wrapping(self.behind.get() + 1) };
+                    self.behind = if self.owed == Owed::ZERO { Behind::ZERO } else { Behind::wrapping(self.behind.get() + 1) };
                     State::Visit
                 }
                 None => State::SetupWait,
@@ -264,9 +264,9 @@ impl Context {
         self.state = to;
     }
 
-    /// It takes no ray: with the next one the epoch would be that of a line that may still come.
+    /// It takes no ray before the lines that it is owed have come: long before an epoch comes again while a line of it may.
     pub fn rests(&self) -> bool {
-        self.state == State::Idle && self.behind == Epoch::MAX && self.owed != Owed::ZERO
+        self.state == State::Idle && self.behind == Behind::MAX && self.owed != Owed::ZERO
     }
 
     /// It takes a ray.

@@ -18,7 +18,7 @@ use crate::block::tessellate::Tessellate;
 use crate::block::tree_deciders::TreeDeciders;
 use crate::hardware::Resource;
 use crate::hardware::ports::{
-    ContextView, Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn, UnitCounters,
+    Behind, ContextView, Corners, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn, UnitCounters,
 };
 use crate::hardware::{Hardware, State};
 use crate::num::{RayT, U, Wire};
@@ -62,8 +62,8 @@ pub struct TraversalUnit {
     pub(super) scene: SceneConfig,
     /// Cycles since the last tick of the limit of answers.
     ticks: u64,
-    /// Ticks since the last age, modulo the epochs.
-    age_ticks: Epoch,
+    /// Ticks since the last age.
+    age_ticks: Behind,
     pub(super) contexts: Vec<Context>,
     arbiters: [Arbiter; Resource::COUNT],
     pub(super) ray_setup: Fitted<StartSetup>,
@@ -103,7 +103,7 @@ impl TraversalUnit {
             hardware: config,
             scene,
             ticks: 0,
-            age_ticks: Epoch::ZERO,
+            age_ticks: Behind::ZERO,
             contexts: vec![Context::new(&config); config.contexts],
             arbiters: Default::default(),
             ray_setup: Fitted::linked(&config, config.setup_copies),
@@ -282,7 +282,7 @@ impl TraversalUnit {
         let tri = self.tri_test.offered();
         let divided = self.hit_divide.offered();
         let tick = self.ticks >= self.scene.answer_limit.get();
-        let age = tick && self.age_ticks == Epoch::MAX;
+        let age = tick && self.age_ticks == Behind::MAX;
         self.count(inputs, w);
         let answer = if self.hardware.registers_results() { std::mem::replace(&mut self.answer, inputs.answer) } else { inputs.answer };
         let cycle = Cycle {
@@ -316,7 +316,7 @@ impl TraversalUnit {
 
         self.cycles += 1;
         self.ticks = if tick { 0 } else { self.ticks + 1 };
-        self.age_ticks = Epoch::wrapping(self.age_ticks.get() + u64::from(tick));
+        self.age_ticks = Behind::wrapping(self.age_ticks.get() + u64::from(tick));
         for (k, context) in self.contexts.iter_mut().enumerate() {
             self.states[context.state as usize] += 1;
             context.tick(k, &self.scene, &cycle);

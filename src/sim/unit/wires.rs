@@ -110,7 +110,7 @@ pub struct Cycle {
     pub flush: bool,
     /// The limit of answers has passed since the last one.
     pub tick: bool,
-    /// As many ticks as there are epochs have passed since the last one.
+    /// An age of ticks has passed since the last one.
     pub age: bool,
     pub setup: Served<ray_setup::Out>,
     /// Its results are memory lines.

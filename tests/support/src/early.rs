@@ -6,7 +6,7 @@ use crate::models::{any_rays, ball, terrain, with_vertices};
 use crate::plain::plain;
 use lodray::format::{BvhNode, ChildRef, L0Record, Scene, SplitRecord, VertexData};
 use lodray::golden::exact::Exact;
-use lodray::hardware::ports::{AnswerLimit, Epoch, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
+use lodray::hardware::ports::{AnswerLimit, Behind, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::Hierarchy;
 use lodray::method::lod::LodImage;
@@ -295,15 +295,15 @@ pub fn each_moment<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E
     }
 }
 
-/// A line that comes only when the number of its ray would come again, or never: until then its context takes all other rays, and then none.
+/// A line that comes very late, or never: its context takes some other rays meanwhile, and then none.
 pub fn each_rest<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E) {
-    const EPOCHS: u64 = 1 << Epoch::WIDTH;
+    const MOST: u64 = 1 << Behind::WIDTH;
     const SHORT_LIMIT: u64 = 15;
     let desk = Desk::of(Hardware::one_context(), with_vertices(VertexForm::Compact, ball(2, 0.4, 1)));
     // One that meets nothing is soon done.
     let [x, y, z] = desk.rays[0].direction.get().map(|c| S::new(-c));
     let away = Ray { direction: Vec3 { x, y, z }, ..desk.rays[0] };
-    let age = EPOCHS * (SHORT_LIMIT + 1);
+    let age = MOST * (SHORT_LIMIT + 1);
     for comes in [true, false] {
         let mut unit = make(desk.config, &SceneConfig { answer_limit: AnswerLimit::new(SHORT_LIMIT), ..desk.scene() });
         let (mut due, mut withheld) = (Due { latency: 2, ..Due::default() }, None);
@@ -319,8 +319,7 @@ pub fn each_rest<E: Exposed>(mut make: impl FnMut(Hardware, &SceneConfig) -> E) 
             settle(&mut unit, &mut due);
             rays += 1;
         }
-        // With the next one the epoch would be the line's.
-        assert_eq!(rays, EPOCHS - 1);
+        assert_eq!(rays, MOST - 1);
         let from = due.now;
         if comes {
             due.lines.push((from + 100, MemoryAnswer { tag, epoch, error: false, line: [U::MAX; 4] }));

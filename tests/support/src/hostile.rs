@@ -7,7 +7,7 @@ use crate::plain::plain;
 use lodray::format::{BvhNode, ChildRef, Scene};
 use lodray::golden::ExactHit;
 use lodray::golden::exact::Exact;
-use lodray::hardware::ports::{AnswerLimit, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
+use lodray::hardware::ports::{AnswerLimit, Behind, HitOut, MemoryAnswer, MemoryRequest, RayIn, SceneConfig, SecondaryIn};
 use lodray::hardware::{Hardware, RayError};
 use lodray::mesh::most_zeros;
 use lodray::method::Hit;
@@ -222,7 +222,9 @@ impl<'a> Hostile<'a> {
             self.cycle(unit, true, true);
         }
         self.mischief = Mischief { lost: 1024, ..Mischief::default() };
-        self.drain(unit, 2 * (LIMIT + 1) + 1000 * self.config.contexts as u64);
+        // A line is late within two limits; contexts that are owed lines rest for two ages.
+        let rest = 2 * (1 << Behind::WIDTH) * (LIMIT + 1);
+        self.drain(unit, rest + 2 * (LIMIT + 1) + 1000 * self.config.contexts as u64);
         self.mischief = Mischief::default();
         self.waits = false;
         self.change(unit, 0, self.memories[0].config(), true);
