@@ -12,9 +12,9 @@ module traversal_unit #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE,
   // Counters and a look into each context; a parity bit in every memory; clocks of blocks and contexts that stand still while nothing is to do.
-  parameter bit WATCH = 1'b0,
-  parameter bit MEMORY_PARITY = 1'b0,
-  parameter bit CLOCK_GATES = 1'b0
+  parameter int unsigned WATCH = 0,
+  parameter int unsigned MEMORY_PARITY = 0,
+  parameter int unsigned CLOCK_GATES = 0
 ) (
   input  logic                     clk_i,
   input  logic                     rst_ni,
@@ -46,6 +46,9 @@ module traversal_unit #(
 
   localparam int unsigned N = CONTEXTS;
   localparam int unsigned CONTEXT_W = lod_pkg::CONTEXT_W;
+  localparam bit WATCHED = WATCH != 0;
+  localparam bit PARITY = MEMORY_PARITY != 0;
+  localparam bit GATED = CLOCK_GATES != 0;
   localparam bit SECONDARY = lod_pkg::SECONDARY != 0;
   localparam bit DECIDING = SECONDARY && lod_pkg::LOD_TEST != 0;
 
@@ -101,7 +104,7 @@ module traversal_unit #(
   lod_pkg::ray_setup_out_t setup_made, setup_out;
   logic [CONTEXT_W-1:0] setup_in_tag, setup_made_tag;
 
-  station #(.N(N), .IN_W(lod_pkg::START_SETUP_IN_W), .OUT_W(lod_pkg::RAY_SETUP_OUT_W), .INTERVAL(lod_pkg::SETUP_INTERVAL), .CLOCK_GATES(CLOCK_GATES)) u_setup_station (
+  station #(.N(N), .IN_W(lod_pkg::START_SETUP_IN_W), .OUT_W(lod_pkg::RAY_SETUP_OUT_W), .INTERVAL(lod_pkg::SETUP_INTERVAL), .CLOCK_GATES(GATED)) u_setup_station (
     .clk_i, .rst_ni,
     .request_i(setup_request), .data_i(setup_data), .grant_o(setup_grant), .for_o(setup_for), .valid_o(), .out_o(setup_out), .tag_o(),
     .block_clk_o(setup_clk), .block_valid_o(setup_in_valid), .block_ready_i(setup_in_ready), .block_data_o(setup_in), .block_index_o(setup_in_tag),
@@ -122,7 +125,7 @@ module traversal_unit #(
   lod_pkg::child_test_out_t child_made, child_out;
   logic [CONTEXT_W-1:0] child_in_tag, child_made_tag;
 
-  station #(.N(N), .IN_W(lod_pkg::CHILD_TEST_IN_W), .OUT_W(lod_pkg::CHILD_TEST_OUT_W), .INTERVAL(4 / lod_pkg::BOXES_PER_CYCLE), .CLOCK_GATES(CLOCK_GATES)) u_child_station (
+  station #(.N(N), .IN_W(lod_pkg::CHILD_TEST_IN_W), .OUT_W(lod_pkg::CHILD_TEST_OUT_W), .INTERVAL(4 / lod_pkg::BOXES_PER_CYCLE), .CLOCK_GATES(GATED)) u_child_station (
     .clk_i, .rst_ni,
     .request_i(child_request), .data_i(child_data), .grant_o(child_grant), .for_o(child_for), .valid_o(), .out_o(child_out), .tag_o(),
     .block_clk_o(child_clk), .block_valid_o(child_in_valid), .block_ready_i(child_in_ready), .block_data_o(child_in), .block_index_o(child_in_tag),
@@ -144,7 +147,7 @@ module traversal_unit #(
   lod_pkg::tree_deciders_out_t decide_made, decide_out;
   logic [CONTEXT_W-1:0] decide_made_tag;
 
-  station #(.N(N), .IN_W(lod_pkg::TREE_DECIDERS_IN_W), .OUT_W(lod_pkg::TREE_DECIDERS_OUT_W), .INTERVAL(1), .CLOCK_GATES(CLOCK_GATES)) u_decide_station (
+  station #(.N(N), .IN_W(lod_pkg::TREE_DECIDERS_IN_W), .OUT_W(lod_pkg::TREE_DECIDERS_OUT_W), .INTERVAL(1), .CLOCK_GATES(GATED)) u_decide_station (
     .clk_i, .rst_ni,
     .request_i(decide_request), .data_i(decide_data), .grant_o(decide_grant), .for_o(decide_for), .valid_o(), .out_o(decide_out), .tag_o(),
     .block_clk_o(decide_clk), .block_valid_o(decide_in_valid), .block_ready_i(decide_in_ready), .block_data_o(decide_in), .block_index_o(decide_in_tag),
@@ -170,7 +173,7 @@ module traversal_unit #(
   lod_pkg::lod_test_out_t lod_made, lod_out;
   logic [CONTEXT_W-1:0] lod_in_tag, lod_made_tag;
 
-  station #(.N(N), .IN_W(lod_pkg::LOD_TEST_BY_IN_W), .OUT_W(lod_pkg::LOD_TEST_OUT_W), .INTERVAL(3 / lod_pkg::LOD_EDGES_PER_CYCLE), .CLOCK_GATES(CLOCK_GATES)) u_lod_station (
+  station #(.N(N), .IN_W(lod_pkg::LOD_TEST_BY_IN_W), .OUT_W(lod_pkg::LOD_TEST_OUT_W), .INTERVAL(3 / lod_pkg::LOD_EDGES_PER_CYCLE), .CLOCK_GATES(GATED)) u_lod_station (
     .clk_i, .rst_ni,
     .request_i(lod_request), .data_i(lod_data), .grant_o(lod_grant), .for_o(lod_for), .valid_o(), .out_o(lod_out), .tag_o(),
     .block_clk_o(lod_clk), .block_valid_o(lod_in_valid), .block_ready_i(lod_in_ready), .block_data_o(lod_in), .block_index_o(lod_in_tag),
@@ -224,7 +227,7 @@ module traversal_unit #(
   lod_pkg::tessellate_out_t morph_made, morph_out;
   logic [CONTEXT_W-1:0] morph_in_tag, morph_made_tag;
 
-  station #(.N(N), .IN_W(MORPH_W), .OUT_W(lod_pkg::TESSELLATE_OUT_W), .INTERVAL(1), .CLOCK_GATES(CLOCK_GATES)) u_morph_station (
+  station #(.N(N), .IN_W(MORPH_W), .OUT_W(lod_pkg::TESSELLATE_OUT_W), .INTERVAL(1), .CLOCK_GATES(GATED)) u_morph_station (
     .clk_i, .rst_ni,
     .request_i(morph_request), .data_i(morph_data), .grant_o(morph_grant), .for_o(morph_for), .valid_o(), .out_o(morph_out), .tag_o(),
     .block_clk_o(morph_clk), .block_valid_o(morph_in_valid), .block_ready_i(morph_in_ready), .block_data_o({morph_own, morph_line, morph_short, morph_place}), .block_index_o(morph_in_tag),
@@ -287,7 +290,7 @@ module traversal_unit #(
   lod_pkg::bary_map_out_t map_made, map_out;
   logic [CONTEXT_W-1:0] map_in_tag, map_made_tag;
 
-  station #(.N(N), .IN_W(lod_pkg::BARY_MAP_IN_W), .OUT_W(lod_pkg::BARY_MAP_OUT_W), .INTERVAL(1), .CLOCK_GATES(CLOCK_GATES)) u_map_station (
+  station #(.N(N), .IN_W(lod_pkg::BARY_MAP_IN_W), .OUT_W(lod_pkg::BARY_MAP_OUT_W), .INTERVAL(1), .CLOCK_GATES(GATED)) u_map_station (
     .clk_i, .rst_ni,
     .request_i(map_request), .data_i(map_data), .grant_o(map_grant), .for_o(map_for), .valid_o(), .out_o(map_out), .tag_o(),
     .block_clk_o(map_clk), .block_valid_o(map_in_valid), .block_ready_i(map_in_ready), .block_data_o(map_in), .block_index_o(map_in_tag),
@@ -375,7 +378,7 @@ module traversal_unit #(
   logic [CONTEXT_W-1:0] tri_in_tag, tri_owner;
   logic [lod_pkg::PLACE_TAG_W-1:0] tri_made_tag;
 
-  station #(.N(N), .IN_W(TRI_W), .OUT_W(lod_pkg::START_TEST_OUT_W), .TAG_W(lod_pkg::PLACE_TAG_W), .INTERVAL(3 / EDGES_PER_CYCLE), .EACH(4), .CLOCK_GATES(CLOCK_GATES)) u_tri_station (
+  station #(.N(N), .IN_W(TRI_W), .OUT_W(lod_pkg::START_TEST_OUT_W), .TAG_W(lod_pkg::PLACE_TAG_W), .INTERVAL(3 / EDGES_PER_CYCLE), .EACH(4), .CLOCK_GATES(GATED)) u_tri_station (
     .clk_i, .rst_ni,
     .request_i(tri_request), .data_i(tri_data), .grant_o(tri_grant), .for_o(tri_for), .valid_o(tri_valid), .out_o({tri_out, tri_below}), .tag_o({tri_owner, tri_number}),
     .block_clk_o(tri_clk), .block_valid_o(tri_in_valid), .block_ready_i(tri_in_ready), .block_data_o({tri_in_number, tri_in}), .block_index_o(tri_in_tag),
@@ -416,7 +419,7 @@ module traversal_unit #(
   assign head   = lod_pkg::QUEUED_HIT_W'(kept_head);
   assign chosen = lod_pkg::QUEUED_HIT_W'(chosen_q);
 
-  hit_queue #(.W(lod_pkg::KEPT_HIT_W), .DEPTH(4 * CONTEXTS), .PARITY(MEMORY_PARITY)) u_queue (
+  hit_queue #(.W(lod_pkg::KEPT_HIT_W), .DEPTH(4 * CONTEXTS), .PARITY(PARITY)) u_queue (
     .clk_i, .rst_ni, .test_i(memory_test_i),
     .push_i(tri_valid && tri_out.hit), .data_i(lod_pkg::KEPT_HIT_W'({tri_below, tri_owner, tri_number, tri_out})),
     .pop_i(queue_pop), .data_o(kept_head), .empty_o(queue_empty), .fault_o(queue_fault)
@@ -470,7 +473,7 @@ module traversal_unit #(
   end
 
   logic divide_clk;
-  block_clock #(.MOST(lod_pkg::DIVIDE_COPIES), .GATED(CLOCK_GATES)) u_divide_clock (
+  block_clock #(.MOST(lod_pkg::DIVIDE_COPIES), .GATED(GATED)) u_divide_clock (
     .clk_i, .rst_ni, .valid_i(divide_link_valid), .ready_i(divide_link_ready), .made_i(divide_made_valid), .clk_o(divide_clk)
   );
 
@@ -573,9 +576,9 @@ module traversal_unit #(
     // Idle, it looks at rays and at lines that come late; while it rests, at ages too.
     logic context_clk, line_comes;
     assign line_comes = line_valid && line.tag[7:2] == 6'(ME);
-    clock_gate #(.GATED(CLOCK_GATES)) u_clock (.clk_i, .enable_i(!rst_ni || !idle[k] || !free[k] || take[k] || line_comes), .clk_o(context_clk));
+    clock_gate #(.GATED(GATED)) u_clock (.clk_i, .enable_i(!rst_ni || !idle[k] || !free[k] || take[k] || line_comes), .clk_o(context_clk));
 
-    ray_context #(.WATCH(WATCH), .MEMORY_PARITY(MEMORY_PARITY)) u_context (
+    ray_context #(.WATCH(WATCHED), .MEMORY_PARITY(PARITY)) u_context (
       .clk_i(context_clk), .rst_ni, .memory_test_i, .scene_i, .fits_i(fits), .flush_i, .tick_i(tick), .age_i(age),
       .view_o(views[k]), .fault_o(context_faults[k]),
       .idle_o(idle[k]), .free_o(free[k]), .take_i(take[k]), .ray_i(in_i), .secondary_i,
@@ -615,7 +618,7 @@ module traversal_unit #(
 
   // ---- For who looks from outside ----
 
-  if (WATCH) begin : g_watch
+  if (WATCHED) begin : g_watch
     // The order of `Resource` in the cycle model: what `taken` and `refused` count.
     logic [9:0] asks, grants;
     assign asks   = {hit_request != '0, map_request != '0, divide_request != '0, tri_request != '0, morph_request != '0,

@@ -6,9 +6,9 @@
 module traversal_unit_axi #(
   parameter int unsigned CONTEXTS = lod_pkg::CONTEXTS,
   parameter int unsigned EDGES_PER_CYCLE = lod_pkg::EDGES_PER_CYCLE,
-  parameter bit WATCH = 1'b0,
-  parameter bit MEMORY_PARITY = 1'b0,
-  parameter bit CLOCK_GATES = 1'b0,
+  parameter int unsigned WATCH = 0,
+  parameter int unsigned MEMORY_PARITY = 0,
+  parameter int unsigned CLOCK_GATES = 0,
   parameter int unsigned DATA_W = 256,
   parameter int unsigned ADDRESS_W = 64
 ) (
