@@ -28,9 +28,17 @@ FINER = {
 }
 # By which knob each is coarse or fine; BVHs have none.
 COARSENESS = {"lod": "delta", "discrete": "level", "grid": "cap", "cluster": "error", "cluster-paper": "pixels", "rlod": "pixels"}
+
+
+def _pixels_off(point):
+    """How far 99 of 100 hits are off; where so coarse a setting has none at all, further than anything allowed."""
+    surface = point["geometry"]["surface"]
+    return surface["percentile_99"] if surface else float("inf")
+
+
 # What errors are, and how large they may be.
 ERRORS = {
-    "surface": ("pixels off (99 of 100)", [0.25, 0.5, 1, 2], lambda point: point["geometry"]["surface"]["percentile_99"]),
+    "surface": ("pixels off (99 of 100)", [0.25, 0.5, 1, 2], _pixels_off),
     "flip": ("FLIP", [0.01, 0.05], lambda point: point["picture"]["flip"]["mean"]),
 }
 COSTS = {
