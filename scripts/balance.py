@@ -20,7 +20,9 @@ from plot import diagram
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs" / "hardware.md"
 METHODS = ["lod", "bvh6"]
+# Scenes that are made here, and how far the eye is in radii; from a scan (--scan) it is SCAN_RADII away.
 VIEWS = {"terrain": [2, 4], "cloth": [3.15]}
+SCAN_RADII = [2]
 # Every number of units and contexts, with each of the blocks: edges of the LOD test and boxes a cycle; ray_setup and hit_divide in turns.
 NUMBERS = {"units.per_group": [1, 2, 4], "units.contexts": [16, 32, 64]}
 BLOCKS = [
@@ -32,6 +34,11 @@ IN_TURN = [1, 4]
 SWEPT = [1, 2, 4, 8, 16, 64]
 
 
+def views(args):
+    """Scenes by name, and the distances of their eyes."""
+    return VIEWS | ({args.scan.stem: SCAN_RADII} if args.scan else {})
+
+
 def values(entries):
     return "{ " + ", ".join(f'"{key}" = {json.dumps(value)}' for key, value in entries.items()) + " }"
 
@@ -39,8 +46,8 @@ def values(entries):
 def jobs(args, machine, units):
     """A list of jobs: all views; units with tiles in turn, or compute free in each order where there are none."""
     lines = [f'size = "{args.size}"', f"methods = {json.dumps(METHODS)}", f'compute = ["{"units" if units else "free"}"]']
-    for (scene, distances), turn in itertools.product(VIEWS.items(), IN_TURN[1:] if units else IN_TURN):
-        lines += ["[[scene]]", f'name = "{scene}-{turn}"', f'generate = "{scene}"', f"distances = {distances}", f"tiles_in_turn = {turn}"]
+    for (name, distances), turn in itertools.product(views(args).items(), IN_TURN[1:] if units else IN_TURN):
+        lines += ["[[scene]]", f'name = "{name}-{turn}"', f"file = {json.dumps(str(scene(args, name)))}", f"distances = {distances}", f"tiles_in_turn = {turn}"]
     for blocks in BLOCKS if units else [{}]:
         lines += ["[[machine]]", f'name = "{machine}"']
         if units:
@@ -109,8 +116,10 @@ def front_rows(machine, groups, own):
 
 
 def scene(args, name):
-    """A generated scene as a file."""
-    path = args.out / f"{name}.lod"
+    """A scene as a file: the scan, or one that is made here."""
+    if args.scan and name == args.scan.stem:
+        return args.scan.resolve()
+    path = args.out.resolve() / f"{name}.lod"
     if not path.exists():
         subprocess.run([args.program, "generate", name, "-o", path, "--quiet"], check=True, stdout=subprocess.DEVNULL)
     return path
@@ -118,7 +127,7 @@ def scene(args, name):
 
 def phase_rows(args, machine):
     """Blocks of the machine's own unit: how full they are, and the frame with each eased, tile by tile and of several tiles in turn."""
-    for name, distances in VIEWS.items():
+    for name, distances in views(args).items():
         for distance in distances:
             words = ["simulate", scene(args, name), "--size", args.size, "--distance", distance, "--machine", machine, "--compute", "units", "--ease"]
             runs = [kept(args, [*words, *(["--tiles-in-turn", turn] if turn > 1 else [])]) for turn in IN_TURN]
@@ -134,7 +143,7 @@ def phase_rows(args, machine):
 
 def turn_rows(args, machine):
     """Cycles by the number of tiles whose rays are handed out in turn, over tile by tile."""
-    for name, distances in VIEWS.items():
+    for name, distances in views(args).items():
         for distance in distances:
             for method in METHODS:
                 for compute in ["free", "units"]:
@@ -147,9 +156,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     add_program(parser)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "balance", help="folder of what is kept")
+    parser.add_argument("--scan", type=Path, help="the scene file of a scan (build), another view")
     parser.add_argument("--size", default="512x512")
     parser.add_argument("--machines", nargs="+", default=["haydel2023", "turing2018"])
     args = parser.parse_args()
+    if args.scan and not args.scan.is_file():
+        parser.error(f"--scan: no file {args.scan}")
     args.out.mkdir(parents=True, exist_ok=True)
     for machine in args.machines:
         measure(args, machine)

@@ -1,6 +1,6 @@
-"""Who wins where: ours, discrete levels, BVHs, grids, clusters and R-LODs over the same scenes, each at every setting of its own sweep, and at equal error who is cheapest (`lodray error-time`, compute free).
+"""Who wins where: ours, discrete levels, BVHs, grids, clusters and R-LODs over the same scenes, each at every setting of its own sweep, and at equal error who is cheapest (`lodray error-time`, compute free; of some views by units too).
 
-Writes tables between the marks of docs/who-wins.md, and all cells to docs/who-wins.csv. Each view of a scene is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same. A run that was stopped goes on, and one of more distances or scenes measures what is new.
+Writes tables between the marks of docs/who-wins.md, and all cells to docs/who-wins.csv and docs/who-wins-units.csv. Each view of a scene is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same. A run that was stopped goes on, and one of more distances or scenes measures what is new.
 """
 
 import argparse
@@ -18,6 +18,8 @@ from markdown import among, put, table
 from options import add_program, ended
 from who_bounces import bounces
 from who_map import drawn
+from who_units import by_units, lines
+from who_units import measured as measured_by_units
 
 ROOT = Path(__file__).resolve().parent.parent
 METHODS = ["lod", "discrete", "bvh", "bvh6", "input-bvh", "input-bvh6", "grid", "cluster", "cluster-paper", "rlod"]
@@ -290,6 +292,14 @@ def builds(args, scene):
     return table(["method", "seconds", "over `bvh6`", "when vertices move"], rows, 1)
 
 
+def view_of(name, place):
+    """A view in words of `lodray simulate`."""
+    if name not in WITHIN:
+        return ["--distance", place]
+    target, eyes = (json.loads(text) for text in WITHIN[name])
+    return [f"--target={','.join(map(str, target))}", f"--eye={','.join(map(str, eyes[0]))}"]
+
+
 def distances(text):
     """Distances, with commas, as they were written."""
     of = text.split(",")
@@ -309,6 +319,7 @@ def main():
     parser.add_argument("--distances", type=distances, default="0.8,1.2,2,4,8,16,32,64", help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
     parser.add_argument("--machines", type=lambda text: text.split(","), default=["haydel2023", "turing2018"], help="machines, with commas (default haydel2023,turing2018)")
     parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow are measured too (default 4)")
+    parser.add_argument("--units", type=distances, default="1.2,4,16", help="distances, of the others, that are measured by units too, beside views from within (default 1.2,4,16)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
     parser.add_argument("--so-far", action="store_true", help="measure nothing: tables of the views that are there, and which are not")
@@ -350,11 +361,18 @@ def main():
     if "haydel2023" in args.machines and args.bounces in args.distances:
         own = {name: done[name, args.bounces] for name in files if (name, args.bounces) in done}
         texts["bounces"] = bounces(args, files, {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}, METHODS, ERRORS["surface"][2], named)
+    places = {(name, place): view_of(name, place) for name, place in done if place in [*args.units, "within"]}
+    own = {view: points for view, points in views.items() if view[:2] in places}
+    by_name = {kind: levels for kind, (_, levels, _) in ERRORS.items()}
+    cases = measured_by_units(args, files, places, own, lambda points, kind, level: best(points, kind, level, COSTS["time"]), by_name)
+    texts["units"] = by_units(cases, METHODS, {kind: name for kind, (name, *_) in ERRORS.items()})
     if args.print:
         print("\n\n".join([f"{len(views)} views of {len(files)} scenes, {args.size}", *texts.values()]))
         return
     with (ROOT / "docs" / "who-wins.csv").open("w", encoding="utf-8", newline="") as out:
         csv.writer(out, lineterminator="\n").writerows(cells(views))
+    with (ROOT / "docs" / "who-wins-units.csv").open("w", encoding="utf-8", newline="") as out:
+        csv.writer(out, lineterminator="\n").writerows(lines(cases, named))
     for name, picture in maps(views, args.size):
         (ROOT / "docs" / "images" / f"{name}.svg").write_text(picture, encoding="utf-8")
     for name, text in texts.items():

@@ -28,9 +28,9 @@ impl HeldFrame {
     /// Runs them on a machine.
     ///
     /// # Errors
-    /// The machine is impossible or too large, its units were to do what they cannot ([`ReplayError::WorkByUnits`], [`ReplayError::ModelsByUnits`], [`ReplayError::PacketsByUnits`]), or nothing happens any more while rays are under way.
+    /// The machine is impossible or too large, its units were to do what they cannot ([`ReplayError::ModelsByUnits`], [`ReplayError::PacketsByUnits`]), or nothing happens any more while rays are under way.
     pub fn run(&self, job: &Job) -> Result<Run, ReplayError> {
         self.demands.check(job)?;
-        replay(job, self.nodes, self.chunks.iter().cloned(), 1)
+        replay(job, self.nodes, self.demands.has_work, self.chunks.iter().cloned(), 1)
     }
 }

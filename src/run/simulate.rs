@@ -67,10 +67,9 @@ pub(super) struct Demands {
 }
 
 impl Demands {
-    /// Refuses traversal units what they cannot do: work before a frame, rays through several models, and packets.
+    /// Refuses traversal units what they cannot do: rays through several models, and packets.
     pub fn check(&self, job: &Job) -> Result<(), ReplayError> {
         match job.compute {
-            Compute::Units if self.has_work => Err(ReplayError::WorkByUnits),
             Compute::Units if self.models > 1 => Err(ReplayError::ModelsByUnits(self.models)),
             Compute::Units if self.lanes > 1 => Err(ReplayError::PacketsByUnits(self.lanes)),
             _ => Ok(()),
@@ -78,11 +77,12 @@ impl Demands {
     }
 }
 
-/// Runs steps for a job on so many threads; their rays begin with `nodes`.
-pub(super) fn replay(job: &Job, nodes: Nodes, source: impl ChunkSource, threads: usize) -> Result<Run, ReplayError> {
+/// Runs steps for a job on so many threads; their rays begin with `nodes`, behind work if there is some.
+pub(super) fn replay(job: &Job, nodes: Nodes, has_work: bool, source: impl ChunkSource, threads: usize) -> Result<Run, ReplayError> {
     let how = Running { window: job.window, threads };
     match job.compute {
         Compute::Free => replay::run_free(&job.machine, nodes, source, how),
+        Compute::Units if has_work => replay::run_work_then_units(&job.machine, nodes, source, how),
         Compute::Units => replay::run_units(&job.machine, source, how),
     }
 }
@@ -113,7 +113,7 @@ pub fn simulate(frame: &dyn Frame, jobs: &[Job], look: &mut dyn FnMut(&Traced)) 
                     sender,
                     scope.spawn(move || {
                         demands.check(job)?;
-                        replay(job, nodes, receiver.into_iter(), threads)
+                        replay(job, nodes, demands.has_work, receiver.into_iter(), threads)
                     }),
                 )
             })

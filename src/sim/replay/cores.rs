@@ -49,10 +49,10 @@ struct CoreContext {
 impl CoreContext {
     /// A line comes from the L1 in `cycle`: only of the last is the context told when it is there.
     #[inline(always)]
-    fn comes(&mut self, context: u32, cycle: u64, memory: &mut GroupSide) {
+    fn comes<const TAG: u32>(&mut self, context: u32, cycle: u64, memory: &mut GroupSide) {
         self.ready = self.ready.max(cycle);
         if self.come + 1 == self.count {
-            memory.answer_at(self.ready, context, Supplier::L1);
+            memory.answer_at(self.ready, TAG | context, Supplier::L1);
         } else {
             self.come += 1;
         }
@@ -71,8 +71,8 @@ struct CorePort {
     awake: bool,
 }
 
-/// All cores.
-pub struct FreeCores {
+/// All cores. What others say of a core or a context has its number and the bits of `TAG`, which are above all numbers: none where there are cores alone.
+pub struct FreeCores<const TAG: u32> {
     feed: Feed,
     contexts: Vec<CoreContext>,
     ports: Vec<CorePort>,
@@ -84,7 +84,7 @@ pub struct FreeCores {
     operations: Operations,
 }
 
-impl FreeCores {
+impl<const TAG: u32> FreeCores<TAG> {
     /// The cores of `machine`, whose groups are those from `first` on; they hold the first of `nodes`.
     pub fn new(machine: &Machine, first: u32, nodes: Nodes) -> Self {
         let cores = &machine.cores;
@@ -186,7 +186,7 @@ impl FreeCores {
                 self.ask(port, memory);
             } else {
                 state.awake = true;
-                memory.wake_at(state.free, port);
+                memory.wake_at(state.free, TAG | port);
             }
         }
         true
@@ -209,36 +209,38 @@ impl FreeCores {
             state.first = asking.next;
         }
         state.free = memory.now() + 1;
-        let asked = memory.request(port / self.per_group, port, context, ask);
+        let asked = memory.request(port / self.per_group, TAG | port, TAG | context, ask);
         if let Asked::Comes(cycle) = asked {
-            memory.look_up(context, cycle);
-            asking.comes(context, cycle, memory);
+            memory.look_up(TAG | context, cycle);
+            asking.comes::<TAG>(context, cycle, memory);
         }
         if asked == Asked::Held {
             state.awake = true;
         } else if state.first != NONE {
             state.awake = true;
-            memory.wake_at(state.free, port);
+            memory.wake_at(state.free, TAG | port);
         }
     }
 }
 
-impl FrontEnd for FreeCores {
+impl<const TAG: u32> FrontEnd for FreeCores<TAG> {
     fn slots(&self) -> (usize, fn(u32) -> usize) {
-        (self.contexts.len(), |context| context as usize)
+        (self.contexts.len(), |context| (context & !TAG) as usize)
     }
 
     fn wake(&mut self, port: u32, memory: &mut GroupSide) {
-        self.ask(port, memory);
+        self.ask(port & !TAG, memory);
     }
 
     #[inline]
     fn comes(&mut self, context: u32, cycle: u64, memory: &mut GroupSide) {
-        self.contexts[context as usize].comes(context, cycle, memory);
+        let context = context & !TAG;
+        self.contexts[context as usize].comes::<TAG>(context, cycle, memory);
     }
 
     #[inline(always)]
-    fn prefetch(&self, happening: Happening, [far, near]: [Option<u32>; 2]) {
+    fn prefetch(&self, happening: Happening, soon: [Option<u32>; 2]) {
+        let [far, near] = soon.map(|id| id.map(|id| id & !TAG));
         if let Happening::Wake(_) = happening {
             if let Some(port) = far {
                 prefetch(&self.ports, port as usize);
@@ -258,18 +260,19 @@ impl FrontEnd for FreeCores {
 
     #[inline]
     fn answer(&mut self, context: u32, from: Supplier, memory: &mut GroupSide) {
+        let context = context & !TAG;
         let state = &mut self.contexts[context as usize];
         state.from = state.from.max(from);
         if state.come + 1 == state.count && state.ready > memory.now() {
             // Another line, found at once, is not there yet.
             let (ready, from) = (state.ready, state.from);
-            return memory.answer_at(ready, context, from);
+            return memory.answer_at(ready, TAG | context, from);
         }
         state.come += 1;
         if state.come == state.count {
             let waited = memory.now() - state.since;
             memory.counts_mut().waits.add(state.from, waited);
-            memory.charge(context, state.since);
+            memory.charge(TAG | context, state.since);
             self.take_rays(context, memory);
         }
     }

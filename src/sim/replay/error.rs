@@ -31,9 +31,6 @@ pub enum ReplayError {
     /// Traversal units hold no nodes.
     #[error("cores.pinned_nodes = {0}: must be 0 where compute takes time; traversal units hold no nodes")]
     PinnedNodes(u32),
-    /// Traversal units do rays alone.
-    #[error("the method does work before a frame, which traversal units cannot: simulate it with compute free")]
-    WorkByUnits,
     /// The rays of a traversal unit stay in the space of one model.
     #[error("the scene has {0} models, and rays of traversal units go through one: simulate it with compute free")]
     ModelsByUnits(usize),

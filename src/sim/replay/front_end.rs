@@ -4,6 +4,7 @@ use super::counts::Supplier;
 use super::event::Happening;
 use super::feed::Feed;
 use super::group_side::GroupSide;
+use super::messages::Grant;
 use crate::block::Operations;
 
 /// Who asks the memory hierarchy for lines: the cores or units of a partition's groups.
@@ -12,6 +13,10 @@ pub(super) trait FrontEnd {
     fn slots(&self) -> (usize, fn(u32) -> usize);
     /// The rays of its groups.
     fn feed(&mut self) -> &mut Feed;
+    /// A group will have a grant.
+    fn grant(&mut self, group: u32, grant: Grant) {
+        self.feed().comes(group, grant);
+    }
     /// A group has rays again, or its first.
     fn granted(&mut self, group: u32, memory: &mut GroupSide);
     /// The cycle it asked for has come, or its held request was taken.

@@ -62,6 +62,16 @@ pub enum Grant {
     Rays(VecDeque<FedRay>),
 }
 
+impl Grant {
+    /// It is work before a frame, and no rays.
+    pub fn is_work(&self) -> bool {
+        match self {
+            Self::Batch(batch) => batch.is_work(),
+            Self::Rays(rays) => rays.front().is_some_and(FedRay::is_work),
+        }
+    }
+}
+
 /// Rays for a group.
 pub struct Granted {
     /// The cycle in which it has them.

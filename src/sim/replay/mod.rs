@@ -2,7 +2,7 @@
 //!
 //! - `wheel`: what happens when.
 //! - `dispatch`: rays, from the functional layer ([`step`](crate::step)), given to groups (`feed`) as they ask; `order`: rays that wait for others.
-//! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL.
+//! - `cores`: who asks for lines when compute takes no time; `units`: traversal units, who do in the cycles of the RTL; `work_first`: both, where rays wait for work.
 //! - `prefetch`: what is read soon.
 //! - `event`: what happens, and what others are told of it; `messages`: what the sides tell each other.
 //! - `group_side`: groups with their L1s; `shared_side`: crossbar, L2 and memory; `level`, `tags`, `mshr` and `slots` are their parts.
@@ -35,6 +35,7 @@ mod tags;
 mod units;
 mod wave;
 mod wheel;
+mod work_first;
 
 #[cfg(test)]
 mod tests;
@@ -62,6 +63,7 @@ use shared_side::SharedSide;
 use std::sync::Mutex;
 use units::Units;
 use wave::Wave;
+use work_first::WorkThenRays;
 
 /// Latencies in cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -163,7 +165,7 @@ pub fn check(machine: &Machine, units: bool) -> Result<(), ReplayError> {
 /// The machine is impossible or too large, or nothing happens any more while rays are under way.
 pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, how: Running) -> Result<Run, ReplayError> {
     check(machine, false)?;
-    let make = |part: &Machine, first| FreeCores::new(part, first, nodes);
+    let make = |part: &Machine, first| FreeCores::<0>::new(part, first, nodes);
     Ok(drive(make, machine, cores::contexts_of_group(machine), source, how)?.0)
 }
 
@@ -174,8 +176,29 @@ pub fn run_free(machine: &Machine, nodes: Nodes, source: impl ChunkSource, how: 
 pub fn run_units(machine: &Machine, source: impl ChunkSource, how: Running) -> Result<Run, ReplayError> {
     check(machine, true)?;
     let (run, fronts) = drive(Units::new, machine, units::contexts_of_group(machine), source, how)?;
+    Ok(with_units(run, &fronts))
+}
+
+/// The same where rays wait for work before their frame: the groups' cores do it, whose compute takes no time, and the units the rays.
+///
+/// # Errors
+/// As [`run_free`].
+pub fn run_work_then_units(machine: &Machine, nodes: Nodes, source: impl ChunkSource, how: Running) -> Result<Run, ReplayError> {
+    check(machine, true)?;
+    check_size(machine, false)?;
+    let count = u64::from(machine.cores.groups) * u64::from(machine.units.per_group);
+    if count > work_first::MOST_UNITS {
+        return Err(ReplayError::TooLarge { what: "traversal units behind work before a frame", most: work_first::MOST_UNITS, count });
+    }
+    let make = |part: &Machine, first| WorkThenRays::new(part, first, nodes);
+    let (run, fronts) = drive(make, machine, units::contexts_of_group(machine), source, how)?;
+    Ok(with_units(run, fronts.iter().map(|front| &front.units)))
+}
+
+/// What the units did besides.
+fn with_units<'a>(run: Run, all: impl IntoIterator<Item = &'a Units>) -> Run {
     let mut run = Run { units: Some(UnitCounts::default()), ..run };
-    for units in fronts {
+    for units in all {
         if let Some(sum) = &mut run.units {
             sum.add(&units.counts(run.cycles));
         }
@@ -184,7 +207,7 @@ pub fn run_units(machine: &Machine, source: impl ChunkSource, how: Running) -> R
         run.late.iter_mut().zip(late).for_each(|(sum, cycles)| *sum += cycles);
         run.counts.stalls[Cause::Port as usize] += port;
     }
-    Ok(run)
+    run
 }
 
 /// Runs the rays of `source` on `machine` with a front end for each partition of its groups, which have so many contexts each. Gives the front ends too.

@@ -66,7 +66,7 @@ impl<F: FrontEnd> Partition<F> {
 
     fn grant(&mut self, granted: Granted) {
         let group = granted.group - self.first;
-        self.front.feed().comes(group, granted.grant);
+        self.front.grant(group, granted.grant);
         self.side.grants_at(granted.cycle, group);
     }
 }

@@ -229,7 +229,7 @@ fn told(id: u32, tag: u16, wait: Option<(u64, u64)>, memory: &mut GroupSide) {
 }
 
 /// Where the way of a waiter's line is kept: lines of a record that are four places apart share one, as a context waits for the last alone.
-fn slot(waiter: u32) -> usize {
+pub fn slot(waiter: u32) -> usize {
     ((waiter >> TAG_BITS) << 8 | waiter & 0xff) as usize
 }
 

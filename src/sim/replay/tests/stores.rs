@@ -155,3 +155,57 @@ fn a_ray_finds_no_line_in_its_l1_that_work_has_written_since() {
     conserved(&run);
     assert_eq!((run.counts.l1.misses, run.counts.l1.hits, run.counts.l2.hits), (2, 0, 1));
 }
+
+/// Rays of several groups, each of lines in the L2 that work has written before.
+fn among(written: u32, rays: u64) -> Chunk {
+    let mut random = Random::new(rays);
+    let lines: Vec<Vec<(u32, bool)>> =
+        (0..rays).map(|_| (0..1 + random.below(9)).map(|_| (random.below(written.into()) as u32, false)).collect()).collect();
+    lines.chunks(4).map(mixed).collect()
+}
+
+#[test]
+fn cores_do_the_work_before_a_frame_and_units_its_rays() {
+    let sets = [("cores.groups", 5), ("cores.per_group", 4), ("units.per_group", 2), ("units.contexts", 3)];
+    let machine = machine(&sets);
+    let by_units = |chunks: &[Chunk], threads| {
+        let how = Running { threads, ..Running::default() };
+        run_work_then_units(&machine, nodes(), chunks.iter().cloned(), how).unwrap()
+    };
+    let frame = || among(300, 200).beginning_frame();
+    let chunks = [writing(0..300), frame(), writing(0..700).beginning_frame(), frame()];
+    let run = by_units(&chunks, 1);
+    conserved(&run);
+    for threads in [2, 3, 8] {
+        assert_eq!(by_units(&chunks, threads), run, "{threads} threads");
+    }
+    assert_eq!(run.frames.iter().map(|frame| frame.is_before).collect::<Vec<_>>(), [true, false, true, false]);
+    assert_eq!((run.counts.rays, run.operations.get(Operation::RaySetup)), (400, 400));
+    // The work takes what it takes where compute is free, and the rays begin when they begin there.
+    let free = run_free(&machine, nodes(), chunks.iter().cloned(), Running::default()).unwrap();
+    let mut work = free.frames[0].clone();
+    work.end.counts.stalls = run.frames[0].end.counts.stalls;
+    assert_eq!((&run.frames[0], run.frames[0].end.counts.stalls), (&work, [0; CAUSES]));
+    assert_eq!(run.frames[1].start, free.frames[1].start);
+    assert_eq!(run.frames[2].end.end - run.frames[2].start, free.frames[2].end.end - free.frames[2].start);
+    // All lines of the rays are in the L2, and their L1s are empty: they take as long in either frame, whatever the work before them, and longer than with compute free.
+    let cycles = |run: &Run, frame: usize| run.frames[frame].end.end - run.frames[frame].start;
+    assert_eq!(cycles(&run, 1), cycles(&run, 3));
+    assert!(cycles(&run, 1) > cycles(&free, 1));
+    assert_eq!((run.counts.l2.misses, run.counts.l2.stores), (0, 1000));
+    // Contexts are idle while cores work, and what these wait for is none of theirs.
+    let states = run.units.as_ref().unwrap().states;
+    let contexts = 5 * 2 * 3;
+    assert_eq!(states.iter().sum::<u64>(), contexts * run.cycles);
+    let lines = states[State::Fetch as usize] + run.late.iter().sum::<u64>();
+    assert_eq!(run.counts.stalls.iter().sum::<u64>(), lines);
+    // Without work the cores do nothing.
+    let rays = [among(300, 200), frame()];
+    let alone = run_units(&machine, rays.iter().cloned(), Running::default()).unwrap();
+    assert_eq!(by_units(&rays, 1), alone);
+    // Half as many units can be named.
+    let mut many = machine;
+    many.set("cores.groups", "2048").unwrap();
+    let why = run_work_then_units(&many, nodes(), [].into_iter(), Running::default()).unwrap_err().to_string();
+    assert_eq!(why, "traversal units behind work before a frame of the machine are more than 2048: 4096");
+}

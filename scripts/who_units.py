@@ -1,0 +1,68 @@
+"""By units: what compute that takes time does to the views of docs/who-wins.md, of each method at the settings that are cheapest with compute free (`lodray simulate --compute units`)."""
+
+import statistics
+
+from keep import kept
+from markdown import among, table
+
+# Errors whose rows are shown; of all errors winners are counted.
+SHOWN = [("surface", 0.25), ("surface", 1), ("flip", 0.01), ("flip", 0.05)]
+
+
+def run(args, file, view, machine, point):
+    """A setting by units: milliseconds and energy."""
+    # What all rays share is no choice of a method.
+    knobs = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
+    found = kept(args, ["--quiet", "simulate", file, *view, "--size", args.size, "--machine", machine, "--compute", "units", "--method", point["method"], *knobs])
+    return found["milliseconds"], found["energy"]["total"]
+
+
+def measured(args, files, places, views, best, errors):
+    """By view and error: of each method, or none where it cannot, its setting and its costs, time with compute free, and time and energy by units."""
+    cases = {}
+    for (name, place, machine), points in views.items():
+        for kind, levels in errors.items():
+            for level in levels:
+                of = cases.setdefault((name, place, machine, kind, level), {})
+                for method, point in best(points, kind, level).items():
+                    of[method] = point and (point, (point["cost"]["milliseconds"], *run(args, files[name], places[name, place], machine, point)))
+    return cases
+
+
+def winners(cases, methods, machine, cost):
+    """How often each method is cheapest on a machine."""
+    won = dict.fromkeys(methods, 0)
+    for (_, _, called, *_), of in cases.items():
+        reached = {method: found[1][cost] for method, found in of.items() if found}
+        if called == machine and reached:
+            won[min(reached, key=lambda method: (reached[method], methods.index(method)))] += 1
+    return won
+
+
+def by_units(cases, methods, errors):
+    """Two tables: who is cheapest how often, and medians over ours."""
+    machines = list(dict.fromkeys(case[2] for case in cases))
+    whats = {"time, compute free": 0, "time": 1, "energy": 2}
+    heads = [f"{what}, {machine}" for machine in machines for what in whats]
+    won = {head: winners(cases, methods, machine, cost) for head, (machine, cost) in zip(heads, ((machine, cost) for machine in machines for cost in whats.values()))}
+    counts = table(["cheapest", *heads], [[f"`{method}`", *(f"{of[method]} of {sum(of.values())}" for of in won.values())] for method in methods], 1)
+    rows = []
+    for kind, level in SHOWN:
+        for method in methods[1:]:
+            cells = []
+            for machine in machines:
+                pairs = [(of[method], of["lod"]) for (_, _, called, *error), of in cases.items() if called == machine and error == [kind, level] and of.get(method) and of.get("lod")]
+                for cost in whats.values():
+                    ratios = [own[1][cost] / ours[1][cost] for own, ours in pairs]
+                    cells.append(f"{statistics.median(ratios):.2f} ({among(ratios)})" if ratios else "cannot")
+            rows.append([f"{errors[kind]} {level:g}", f"`{method}`", *cells])
+    return "\n\n".join([counts, table(["at most", "method over ours, median (least to most)", *heads], rows, 2)])
+
+
+def lines(cases, named):
+    """All of it, as lines of CSV."""
+    yield ["scene", "radii", "machine", "error", "at most", "method", "setting", "ms, compute free", "ms", "uJ"]
+    for case, of in cases.items():
+        for method, found in of.items():
+            setting = named(found[0]) if found else "cannot"
+            yield [*case, method, setting, *(f"{cost:.6g}" for cost in (found[1] if found else ()))]
