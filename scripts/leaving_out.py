@@ -29,7 +29,9 @@ MESHES = {"bunny": "stanford-bunny.obj", "igea": "igea.ply"}
 DISTANCES = [1.5, 3]
 SIZE = "512x512"
 WITHIN = [0.01, 0.05, 0.25, 1]
-HEAD = 'size = "{size}"\nmethods = ["lod"]\ndeltas = [1]\ndistances = {distances}\n[[machine]]\nname = "haydel2023"\n'
+# A unit with one of each block, where the machine's own has some in turns.
+ONE_OF_EACH = ["--set", "units.setup_copies=1", "--set", "units.divide_copies=1"]
+HEAD = 'size = "{size}"\nmethods = ["lod"]\ndeltas = [1]\ndistances = {distances}\n[[machine]]\nname = "haydel2023"\nset = {{ "units.setup_copies" = 1, "units.divide_copies" = 1 }}\n'
 
 
 def call(*words):
@@ -67,7 +69,7 @@ class Scene:
     def simulated(self, scene, *more):
         """Cycles and picojoules of all views together, and hits."""
         runs = [
-            json.loads(call("--quiet", "simulate", scene, "--distance", distance, "--size", SIZE, "--compute", "units", "--json", *more))
+            json.loads(call("--quiet", "simulate", scene, "--distance", distance, "--size", SIZE, "--compute", "units", *ONE_OF_EACH, "--json", *more))
             for distance in DISTANCES
         ]
         return {
@@ -174,7 +176,7 @@ def main():
 def errors(scenes, out):
     """The table of error-time."""
     within, distances = ",".join(map(str, WITHIN)), ",".join(map(str, DISTANCES))
-    views = ["--distances", distances, "--size", SIZE, "--error-size", SIZE.split("x")[0], "--samples", "1", "--methods", "lod", "--values", "delta=1", "--compute", "units"]
+    views = ["--distances", distances, "--size", SIZE, "--error-size", SIZE.split("x")[0], "--samples", "1", "--methods", "lod", "--values", "delta=1", "--compute", "units", *ONE_OF_EACH]
     call("--quiet", "error-time", *[scene.file for scene in scenes], "-o", out, *views, "--most-samples", "0", "--no-host", "--within", within)
     document = json.loads((out / "error-time.json").read_text(encoding="utf-8"))
     heads = ["scene", "radii", "left out", "zeros of coordinates, directions", "error in pixels: mean", "99th percentile", "largest", "GE of a unit", "bytes a finest triangle", "time", "energy"]

@@ -21,7 +21,7 @@ def main():
         if options.fpga:
             fpga.run(options.fpga, options.link_registers, options.seeds, options.jobs, not options.no_route, options.paths, options.doc, tools)
             return
-        unit = plan.read(options.plan) if options.plan else None
+        unit = plan.read(options.plan) if options.plan else plan.of_machine(options.machine, options.set) if options.machine else None
         wanted = unit.blocks() if unit else blocks.chosen(options.block) or blocks.every()
         figures, failures = Run(tools, options).all(wanted)
         rows = [report.row(block.name, figures[block.name]) for block in wanted if block.name in figures]
@@ -67,6 +67,8 @@ def parse():
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="tools at work at once (default: one per core)")
     parser.add_argument("--check", action="store_true", help="write the netlists to target/synth/netlists and run the blocks' own tests on them")
     parser.add_argument("--plan", metavar="PLAN", help="the unit of a plan (lodray plan -o): its blocks with the package that the plan prints, and what they and its contexts have together")
+    parser.add_argument("--machine", metavar="NAME|FILE", help="the unit of a machine (lodray unit): its blocks with the package that it prints, and what they and its contexts have together")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="with --machine: change a value of it, such as units.contexts=32; may be repeated")
     parser.add_argument("--fpga", type=int, nargs="?", const=2, metavar="CONTEXTS", help="the whole unit for an LFE5U-85F, with that many contexts (default 2): placed, routed, and as a bitstream")
     parser.add_argument("--link-registers", type=int, metavar="N", help="with --fpga: registers between contexts and blocks, 0 to 2 (default: as the hardware for an FPGA has them)")
     parser.add_argument("--no-route", action="store_true", help="with --fpga: place only, and tell the clock that the placer expects")
@@ -88,9 +90,14 @@ def parse():
             parser.error(f"--doc {others[0]}: the table of docs/hardware.md has no row of it; {blocks.WHOLE} goes by itself")
     if options.doc and of_whole and options.no_gates:
         parser.error(f"--doc {blocks.WHOLE} writes what the unit has in gates")
-    if options.plan and (options.block or options.doc or options.check):
-        parser.error("--plan is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
-    if options.fpga is not None and (options.block or options.check or options.plan or options.no_place or options.no_fpga):
+    if options.plan and options.machine:
+        parser.error("--plan and --machine are two units")
+    for name in ("plan", "machine"):
+        if getattr(options, name) and (options.block or options.doc or options.check):
+            parser.error(f"--{name} is of a whole unit: it has its own blocks, no place in docs/hardware.md, and its tests are those of cargo test")
+    if options.set and not options.machine:
+        parser.error("--set goes with --machine")
+    if options.fpga is not None and (options.block or options.check or options.plan or options.machine or options.no_place or options.no_fpga):
         parser.error("--fpga is the whole unit: of all else it takes --seeds, --jobs, --link-registers, --no-route, --paths and --doc alone")
     if options.fpga is None and (options.link_registers is not None or options.no_route):
         parser.error("--link-registers and --no-route go with --fpga")

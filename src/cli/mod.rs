@@ -48,6 +48,7 @@ mod subdivide;
 mod sweep;
 mod terminal;
 mod trace;
+mod unit;
 mod verify;
 mod words;
 
@@ -83,6 +84,8 @@ enum Command {
     Verify(verify::Args),
     /// Find what a traversal unit can leave out for some scenes and views, and what that saves
     Plan(plan::Args),
+    /// Show the traversal unit of a machine, block by block, and write its RTL's sizes
+    Unit(unit::Args),
     /// Remove the levels of a scene that no ray of a plan's views reaches; the hits of these rays stay the same, other rays are refused
     Prune(prune::Args),
     /// Move the vertices of a scene: its trees stay, boxes and bounds are made anew; one scene, or one for each frame
@@ -149,6 +152,7 @@ pub fn run(cli: Cli) -> anyhow::Result<ExitCode> {
         Command::Info(args) => info::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Plan(args) => plan::run(&args),
+        Command::Unit(args) => unit::run(&args),
         Command::Prune(args) => prune::run(&args),
         Command::Refit(args) => refit::run(&args),
         Command::Render(args) => render::run(&args),

@@ -31,25 +31,23 @@ pub fn context_gates(hardware: &Hardware, has_levels: bool) -> f64 {
 
 /// Gate equivalents of one unit: its blocks, of the default sizes, and its contexts. None if a block was not measured.
 pub fn unit_gates(unit: MethodUnit, hardware: &Hardware) -> Option<f64> {
-    let blocks: f64 = hardware.blocks(unit.blocks).map(|operation| all_gates(operation, hardware)).sum::<Option<f64>>()?;
+    let blocks: f64 = hardware.blocks(unit.blocks).map(|operation| block_gates(operation, hardware)).sum::<Option<f64>>()?;
     Some(blocks + hardware.contexts as f64 * context_gates(hardware, unit.has_levels))
 }
 
-/// All copies of a block, and what lets them take turns: as measured of the default's.
-fn all_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
-    let (copies, one) = (hardware.copies(operation), block_gates(operation, hardware)?);
+/// Gate equivalents of a block of this hardware: of all of its kind, with what lets them take turns, as measured of the default's. None if it was not measured.
+pub fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
+    let (copies, one) = (hardware.copies(operation), one_block_gates(operation, hardware)?);
     if copies == 1 {
         return Some(one);
     }
-    let (turns, usual) = match operation {
-        Operation::RaySetup | Operation::StartSetup => ("setup_copies", Operation::RaySetup),
-        _ => ("divide_copies", Operation::HitDivide),
-    };
-    let beside = block_row(&format!("{turns}-COPIES={copies}"))? - f64::from(copies) * block_gates(usual, &Hardware::DEFAULT)?;
+    let turns = hardware.module(operation);
+    let usual = if turns == "setup_copies" { Operation::RaySetup } else { Operation::HitDivide };
+    let beside = block_row(&format!("{turns}-COPIES={copies}"))? - f64::from(copies) * one_block_gates(usual, &Hardware::DEFAULT)?;
     Some(f64::from(copies) * one + beside)
 }
 
-fn block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
+fn one_block_gates(operation: Operation, hardware: &Hardware) -> Option<f64> {
     let (own, default) = (hardware.form(), Hardware::DEFAULT.form());
     let parameter = match operation {
         Operation::LodTest | Operation::LodTestBy => {

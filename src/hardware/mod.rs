@@ -14,7 +14,7 @@ pub mod ports;
 mod resource;
 mod state;
 
-pub use area::{context_gates, unit_gates};
+pub use area::{block_gates, context_gates, unit_gates};
 pub use context::Memory;
 pub use eased::{Eased, EasedError};
 pub(crate) use resource::Resource;
@@ -317,6 +317,15 @@ impl Hardware {
             Operation::RaySetup | Operation::StartSetup => self.setup_copies,
             Operation::HitDivide | Operation::StartDivide => self.divide_copies,
             _ => 1,
+        }
+    }
+
+    /// The module of the RTL that has all blocks of this kind.
+    pub fn module(&self, operation: Operation) -> &'static str {
+        match (self.copies(operation), operation) {
+            (1, _) => operation.name(),
+            (_, Operation::RaySetup | Operation::StartSetup) => "setup_copies",
+            _ => "divide_copies",
         }
     }
 

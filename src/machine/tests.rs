@@ -138,8 +138,8 @@ fn an_impossible_value_names_file_key_and_reason() {
         ("lod_edges_per_cycle = 1", "lod_edges_per_cycle = 0", "units.lod_edges_per_cycle must be 3 or 1, but is 0"),
         ("divide_bits = 3", "divide_bits = 4", "units.divide_bits must be 1 to 3, but is 4"),
         ("setup_bits = 3", "setup_bits = 0", "units.setup_bits must be 1 to 3, but is 0"),
-        ("setup_bits = 3", "setup_bits = 3\nsetup_copies = 5", "units.setup_copies must be 1 to 4, but is 5"),
-        ("setup_bits = 3", "setup_bits = 3\ndivide_copies = 0", "units.divide_copies must be 1 to 4, but is 0"),
+        ("setup_copies = 3", "setup_copies = 5", "units.setup_copies must be 1 to 4, but is 5"),
+        ("divide_copies = 2", "divide_copies = 0", "units.divide_copies must be 1 to 4, but is 0"),
         ("\"dram/gddr5.toml\"", "\"gddr5\"", "dram.device must be a file's path, with .toml, but is \"gddr5\""),
         ("channels = 8", "channels = 6", "dram.channels must be a power of two up to 65536, but is 6"),
         ("queue = 64                 # own", "queue = 0", "dram.queue must be"),
@@ -218,11 +218,13 @@ fn overrides_change_one_value() {
     assert_eq!(machine.units.config().contexts, 16);
     machine.set("units.divide_bits", "2").unwrap();
     machine.set("units.setup_bits", "1").unwrap();
-    machine.set("units.setup_copies", "3").unwrap();
-    machine.set("units.divide_copies", "2").unwrap();
+    machine.set("units.setup_copies", "4").unwrap();
+    machine.set("units.divide_copies", "3").unwrap();
     machine.set("units.boxes_per_cycle", "1").unwrap();
     let Hardware { divide_bits, setup_bits, setup_copies, divide_copies, boxes_per_cycle, .. } = machine.units.config();
-    assert_eq!([divide_bits, setup_bits, setup_copies, divide_copies, boxes_per_cycle.count()], [2, 1, 3, 2, 1]);
+    assert_eq!([divide_bits, setup_bits, setup_copies, divide_copies, boxes_per_cycle.count()], [2, 1, 4, 3, 1]);
+    let Hardware { setup_copies, divide_copies, .. } = expected.units.config();
+    assert_eq!([setup_copies, divide_copies], [3, 2]);
     assert_eq!([Hardware::default().setup_copies, Hardware::default().divide_copies], [1, 1]);
     assert!(!machine.units.config().secondary);
     machine.set("units.secondary", "true").unwrap();

@@ -8,3 +8,4 @@ mod import;
 mod layers;
 mod refit;
 mod shards;
+mod unit;

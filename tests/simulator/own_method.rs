@@ -78,7 +78,7 @@ fn what_stays_costs_nothing_in_the_next_frame() {
 fn cores_do_the_work_before_units_trace_the_rays() {
     let (scene, camera) = street();
     let method = of(&scene, &example::METHOD);
-    let [free, units] = [Compute::Free, Compute::Units].map(|compute| run(&method, PassRays::Camera(camera.clone()), compute));
+    let [free, units] = [Compute::Free, Compute::Units].map(|compute| run(&method, PassRays::Camera(camera), compute));
     let [own, of_units] = [&free, &units].map(|result| result.frames[0].before.unwrap());
     assert_eq!(
         (own.cycles, own.l1_requests, own.stores, own.dram_bytes),

@@ -5,9 +5,10 @@ mod speed;
 use super::args::{Size, radii};
 use super::output::{busy, check_target, open, print_json, print_line, print_table, remark, write_file};
 use super::sweep::{ListText, open_scene, read_jobs};
+use super::unit::{UnitFacts, gates};
 use anyhow::Context;
 use lodray::format::{Job, Scene};
-use lodray::hardware::{Hardware, context_gates, unit_gates};
+use lodray::hardware::Hardware;
 use lodray::method::knob::{DELTA, quality};
 use lodray::method::{Knobs, lod};
 use lodray::plan::{Data, Measure, Narrowest, Part, Plan, RayNeeds, Reach, Saving, Within, savings};
@@ -64,76 +65,6 @@ struct Document<'a> {
     savings: &'a [Saving],
     unit: UnitFacts,
     full_unit: UnitFacts,
-}
-
-/// A unit in numbers.
-#[derive(Serialize)]
-struct UnitFacts {
-    levels: u32,
-    stored_levels: u32,
-    bvh_depth: u32,
-    stack_entries: u32,
-    contexts: usize,
-    edges_per_cycle: u32,
-    lod_edges_per_cycle: u32,
-    divide_bits: u32,
-    setup_bits: u32,
-    setup_copies: u32,
-    divide_copies: u32,
-    boxes_per_cycle: u32,
-    index_bits: u32,
-    lod_test: bool,
-    start_radius: bool,
-    hit_mapping: bool,
-    compact_vertices: bool,
-    exact_vertices: bool,
-    coordinate_zeros: u32,
-    direction_zeros: u32,
-    /// Blocks of a traversal unit that it has.
-    blocks: Vec<&'static str>,
-    /// Gate equivalents of the whole: one of each block, and the contexts.
-    gates: f64,
-    /// Registers of a context, in bits.
-    context_bits: u32,
-    /// Gate equivalents of one, with its logic and its memories.
-    context_gates: f64,
-}
-
-impl UnitFacts {
-    fn of(hardware: &Hardware) -> Self {
-        let blocks = lod::METHOD.unit.into_iter().flat_map(|unit| hardware.blocks(unit.blocks));
-        Self {
-            levels: hardware.levels,
-            stored_levels: hardware.stored_levels(),
-            bvh_depth: hardware.bvh_depth,
-            stack_entries: hardware.stack_entries(),
-            contexts: hardware.contexts,
-            edges_per_cycle: hardware.edges_per_cycle.count(),
-            lod_edges_per_cycle: hardware.lod_edges_per_cycle.count(),
-            divide_bits: hardware.divide_bits,
-            setup_bits: hardware.setup_bits,
-            setup_copies: hardware.setup_copies,
-            divide_copies: hardware.divide_copies,
-            boxes_per_cycle: hardware.boxes_per_cycle.count(),
-            index_bits: hardware.index_bits,
-            lod_test: hardware.chooses_levels(),
-            start_radius: hardware.start_radius,
-            hit_mapping: hardware.hit_mapping,
-            compact_vertices: hardware.compact_vertices,
-            exact_vertices: hardware.exact_vertices,
-            coordinate_zeros: hardware.coordinate_zeros,
-            direction_zeros: hardware.direction_zeros,
-            blocks: blocks.map(|operation| operation.name()).collect(),
-            gates: gates(hardware),
-            context_bits: hardware.context_registers(true).kept,
-            context_gates: context_gates(hardware, true),
-        }
-    }
-}
-
-/// Gate equivalents of a unit: one of each block, and its contexts.
-fn gates(hardware: &Hardware) -> f64 {
-    lod::METHOD.unit.and_then(|unit| unit_gates(unit, hardware)).unwrap_or(0.0)
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
