@@ -322,7 +322,7 @@ def main():
     parser.add_argument("--units", type=distances, default="1.2,4,16", help="distances, of the others, that are measured by units too, beside views from within (default 1.2,4,16)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
-    parser.add_argument("--so-far", action="store_true", help="measure nothing: tables of the views that are there, and which are not")
+    parser.add_argument("--so-far", action="store_true", help="tables of the views that are there, and which are not: no other is measured")
     parser.add_argument("--print", action="store_true", help="print the tables, and leave the document alone")
     parser.add_argument("--only", type=lambda text: text.split(";"), default=list(SCENES), help=f"scenes to make, by name, with semicolons: {'; '.join(SCENES)} (default all)")
     parser.add_argument("scene", nargs="*", type=Path, help="scene files beside those that are made here, of meshes (build)")
