@@ -118,8 +118,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_json(&Document { machine: &facts.label, set: &facts.set, units: count, unit: UnitFacts::of(&hardware) })?;
     } else {
         let whole = |gates: f64| grouped(gates.round() as u64); // far below 2^53
-        let (one, all) = (gates(&hardware), gates(&hardware) * f64::from(count));
-        print_line(&format!("a unit of {} has {} GE (gate equivalents); all {count} have {}", facts.title(), whole(one), whole(all)))?;
+        let one = gates(&hardware);
+        let all = if count > 1 { format!("; all {count} have {}", whole(one * f64::from(count))) } else { String::new() };
+        print_line(&format!("a unit of {} has {} GE (gate equivalents){all}", facts.title(), whole(one)))?;
         print_table(&table(&hardware))?;
     }
     if let Some(package) = &args.package {
