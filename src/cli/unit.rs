@@ -102,14 +102,14 @@ struct Document<'a> {
     machine: &'a str,
     set: &'a [String],
     /// How many units the machine has.
-    units: u32,
+    units: u64,
     unit: UnitFacts,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let facts = machine(&args.machine, &args.set, "--set")?;
     let (cores, units) = (&facts.description.cores, &facts.description.units);
-    let (hardware, count) = (units.config(), cores.groups * units.per_group);
+    let (hardware, count) = (units.config(), u64::from(cores.groups) * u64::from(units.per_group));
     if let Some(package) = &args.package {
         let files = machine_files(&args.machine, &facts)?;
         check_target(package, &files.iter().map(PathBuf::as_path).collect::<Vec<&Path>>())?;
@@ -117,9 +117,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         print_json(&Document { machine: &facts.label, set: &facts.set, units: count, unit: UnitFacts::of(&hardware) })?;
     } else {
-        let whole = |gates: f64| grouped(gates.round() as u64); // far below 2^53
         let one = gates(&hardware);
-        let all = if count > 1 { format!("; all {count} have {}", whole(one * f64::from(count))) } else { String::new() };
+        let all = if count > 1 { format!("; all {count} have {}", whole(one * count as f64)) } else { String::new() };
         print_line(&format!("a unit of {} has {} GE (gate equivalents){all}", facts.title(), whole(one)))?;
         print_table(&table(&hardware))?;
     }
@@ -130,9 +129,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Gate equivalents as a whole number, in groups of three digits.
+fn whole(gates: f64) -> String {
+    grouped(gates.round() as u64) // far below 2^53
+}
+
 /// A line for each block, and one for the contexts.
 fn table(hardware: &Hardware) -> String {
-    let whole = |gates: f64| grouped(gates.round() as u64); // far below 2^53
     let mut rows = vec![["", "how many", "cycles an item", "GE, all of them"].map(str::to_owned)];
     for operation in lod::METHOD.unit.into_iter().flat_map(|unit| hardware.blocks(unit.blocks)) {
         let [copies, interval] = [hardware.copies(operation), hardware.interval(operation)].map(|count| count.to_string());
