@@ -29,40 +29,53 @@ ground = [0.3, 0.3, 0.3]
 """
 
 
-def description(args, name, file, eye, shadow):
+def description(args, name, file, eye, shadow, samples, depth):
     """A file that describes the scene as a camera at `eye` sees it."""
     facts = json.loads(subprocess.run([args.program, "info", file, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout)
-    path = args.out / f"{name.replace(', ', '-').replace(' ', '-')}-{args.bounces}-{args.size}-{'shadow' if shadow else 'plain'}.toml"
+    more = f"{samples}-samples" if samples > 1 else "shadow" if shadow else "plain"
+    path = args.out / f"{name.replace(', ', '-').replace(' ', '-')}-{args.bounces}-{args.size}-{more}.toml"
     width, height = args.size.split("x")
-    picture = f"[picture]\nwidth = {width}\nheight = {height}\nsamples = 1\ndepth = 1\nshadow_rays = {str(shadow).lower()}\n"
+    picture = f"[picture]\nwidth = {width}\nheight = {height}\nsamples = {samples}\ndepth = {depth}\nshadow_rays = {str(shadow).lower()}\n"
     camera = f'[[camera]]\nname = "eye"\neye = {eye}\ntarget = {facts["centre"]}\n'
     path.write_text(f'{picture}\n{camera}\n[[model]]\nfile = "{file.resolve()}"\nmaterial = "grey"\n{LIGHTS}', encoding="utf-8")
     return path
 
 
+def run(args, name, file, eye, point, shadow=False, samples=1, depth=1):
+    """Milliseconds and energy up to each bounce."""
+    options = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
+    described = description(args, name, file, eye, shadow, samples, depth)
+    found = kept(args, ["--quiet", "paths", described, "--method", point["method"], *options, "--machine", "haydel2023", "-o", args.out / "paths", "--force"])
+    return [(up_to["milliseconds"], up_to["energy"]) for up_to in found]
+
+
 def costs(args, name, file, eye, point):
     """Milliseconds and energy of all that is traced, one after the other."""
-    options = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
-    words = lambda shadow: ["--quiet", "paths", description(args, name, file, eye, shadow), "--method", point["method"], *options, "--machine", "haydel2023", "-o", args.out / "paths", "--force"]
-    of = {shadow: kept(args, words(shadow)) for shadow in (False, True)}
-    return [(of[shadow][depth]["milliseconds"], of[shadow][depth]["energy"]) for _, shadow, depth in TRACED]
+    of = {shadow: run(args, name, file, eye, point, shadow) for shadow in (False, True)}
+    return [of[shadow][depth] for _, shadow, depth in TRACED]
+
+
+def fastest(points, error):
+    """Of each method its fastest setting within a pixel, if it has one. `paths` does not look for the mesh."""
+    best = {}
+    for point in points:
+        method = point["method"]
+        if not method.startswith("input-") and error(point) <= WITHIN and (method not in best or point["cost"]["milliseconds"] < best[method]["cost"]["milliseconds"]):
+            best[method] = point
+    return best
 
 
 def bounces(args, files, points, eyes, methods, error, named):
     """The table: of each method the median over scenes of its costs over ours, and the scenes one by one. `points` and `eyes` are by scene."""
     ratios, rows = {}, []
     for name, own in points.items():
-        best = {}
-        for point in own:
-            if error(point) <= WITHIN and (point["method"] not in best or point["cost"]["milliseconds"] < best[point["method"]]["cost"]["milliseconds"]):
-                best[point["method"]] = point
+        best = fastest(own, error)
         if "lod" not in best:
             rows.append([name, "`lod`", "cannot", *[""] * (2 * len(TRACED))])
             continue
         ours = costs(args, name, files[name], eyes[name], best["lod"])
         for method in methods:
-            # `paths` does not look for the mesh.
-            if method not in best or method.startswith("input-"):
+            if method not in best:
                 continue
             theirs = costs(args, name, files[name], eyes[name], best[method])
             over = [value for a, b in zip(theirs, ours) for value in (a[0] / b[0], a[1] / b[1])]

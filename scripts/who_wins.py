@@ -1,6 +1,6 @@
 """Who wins where: ours, discrete levels, BVHs, grids, clusters and R-LODs over the same scenes, each at every setting of its own sweep, and at equal error who is cheapest (`lodray error-time`, compute free; of some views by units too).
 
-Writes tables between the marks of docs/who-wins.md, and all cells to docs/who-wins.csv and docs/who-wins-units.csv. Each view of a scene is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same. A run that was stopped goes on, and one of more distances or scenes measures what is new.
+Writes tables between the marks of docs/who-wins.md, all cells to docs/who-wins.csv and docs/who-wins-units.csv, and a page of all views, report.html, beside its pieces (`lodray report`). Each view of a scene is a piece by itself, which is kept: shards take different pieces, in any order and on any machine, and the tables are the same. A run that was stopped goes on, and one of more distances or scenes measures what is new.
 """
 
 import argparse
@@ -10,6 +10,7 @@ import math
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -18,6 +19,7 @@ from markdown import among, put, table
 from options import add_program, ended
 from who_bounces import bounces
 from who_map import drawn
+from who_samples import by_samples
 from who_units import by_units, lines
 from who_units import measured as measured_by_units
 
@@ -117,9 +119,14 @@ def shard_of(pieces, count):
     return of
 
 
+def folder_of(args, file, place):
+    """Where a piece is kept."""
+    return args.out / f"{file.stem}-{place}-{args.size}-{'-'.join(args.machines)}"
+
+
 def measured(args, name, place, file):
     """A piece, a view of a scene on all machines: run now, or kept from before (with --so-far none if it is not there). Where its eye is, and by machine the points of all methods, each with its cost there."""
-    folder = args.out / f"{file.stem}-{place}-{args.size}-{'-'.join(args.machines)}"
+    folder = folder_of(args, file, place)
     if not (folder / "error-time.json").exists():
         if args.so_far:
             return None
@@ -315,10 +322,10 @@ def main():
     """Measures what is not yet there, and writes the tables if all is."""
     parser = argparse.ArgumentParser(prog="scripts/who-wins", description=__doc__.split("\n", maxsplit=1)[0])
     add_program(parser)
-    parser.add_argument("--size", default="1920x1080", help="size of the frames (default 1920x1080)")
+    parser.add_argument("--size", default="512x512", help="size of the frames (default 512x512; 1920x1080 takes about eight times as long)")
     parser.add_argument("--distances", type=distances, default="0.8,1.2,2,4,8,16,32,64", help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
     parser.add_argument("--machines", type=lambda text: text.split(","), default=["haydel2023", "turing2018"], help="machines, with commas (default haydel2023,turing2018)")
-    parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow are measured too (default 4)")
+    parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow and more samples are measured too (default 4)")
     parser.add_argument("--units", type=distances, default="1.2,4,16", help="distances, of the others, that are measured by units too, beside views from within (default 1.2,4,16)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
@@ -351,6 +358,8 @@ def main():
         return
     missing = [f"{name} {place}" for (name, place), of in done.items() if of is None]
     done = {piece: of for piece, of in done.items() if of is not None}
+    if not done:
+        sys.exit(f"scripts/who-wins: no view is in {args.out} yet")
     # By scene, as people read it.
     views = {(name, place, machine): done[name, place][1][machine] for name in files for place in [*args.distances, "within"] if (name, place) in done for machine in args.machines}
     texts = {"missing": f"Views that were not measured: {', '.join(missing)}." if missing else "All views were measured.", "short": short(views, args.size), "count": counted(views), "sizes": sizes(views)}
@@ -360,7 +369,11 @@ def main():
         texts[f"{kind} summary"] = all_over_ours(views, kind)
     if "haydel2023" in args.machines and args.bounces in args.distances:
         own = {name: done[name, args.bounces] for name in files if (name, args.bounces) in done}
-        texts["bounces"] = bounces(args, files, {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}, METHODS, ERRORS["surface"][2], named)
+        points, eyes = {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}
+        texts["bounces"] = bounces(args, files, points, eyes, METHODS, ERRORS["surface"][2], named)
+        texts["samples"] = by_samples(args, files, points, eyes, METHODS, ERRORS["surface"][2])
+    paged = [folder_of(args, files[name], place) / "error-time.json" for name, place, machine in views if machine == args.machines[0]]
+    subprocess.run([args.program, "--quiet", "report", *paged, "--title", f"Who wins where: {len(files)} scenes, {args.size}", "-o", args.out / "report.html"], check=True)
     places = {(name, place): view_of(name, place) for name, place in done if place in [*args.units, "within"]}
     own = {view: points for view, points in views.items() if view[:2] in places}
     by_name = {kind: levels for kind, (_, levels, _) in ERRORS.items()}

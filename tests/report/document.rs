@@ -14,6 +14,33 @@ pub fn of(desk: &Desk) -> ErrorTime {
     serde_json::from_str(&desk.text("error-time.json")).unwrap()
 }
 
+/// The costs of a document, wherever they stand.
+pub fn costs(of: &mut ErrorTime) -> impl Iterator<Item = &mut Costs> {
+    let points = of.points.iter_mut().chain(of.left_out.iter_mut().map(|left| &mut left.point)).flat_map(|point| &mut point.costs);
+    points.chain(of.sizes.iter_mut().flat_map(|size| &mut size.costs))
+}
+
+/// A document for each view of `whole`, of that view alone.
+pub fn by_view(whole: &ErrorTime) -> Vec<ErrorTime> {
+    let of = |own: usize| {
+        let mut all = whole.clone();
+        let only = |view: &mut usize| {
+            let is = *view == own;
+            *view = 0;
+            is
+        };
+        all.views = vec![whole.views[own].clone()];
+        all.points.retain_mut(|point| only(&mut point.view));
+        all.left_out.retain_mut(|left| only(&mut left.point.view));
+        all.sizes.retain_mut(|size| only(&mut size.view));
+        all.equal_error.retain_mut(|equal| only(&mut equal.view));
+        all.pictures.retain_mut(|picture| only(&mut picture.view));
+        all.traces.retain_mut(|grid| only(&mut grid.view));
+        all
+    };
+    (0..whole.views.len()).map(of).collect()
+}
+
 /// All files of a folder and its folders, by their paths within it; `within` is where it lies itself.
 pub fn below(folder: &Path, within: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());

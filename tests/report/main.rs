@@ -68,7 +68,7 @@ fn a_page_of_everything_works_in_a_browser() {
 fn a_large_page_is_light_and_opens_soon() {
     let (desk, document) = desk();
     let large = document::enlarged(&document, desk.folder(), 3, 8, 512);
-    let pictures = embed(&large.pictures, desk.folder(), PICTURE_BYTES).unwrap();
+    let pictures = embed(&large.picture_files(desk.folder()), PICTURE_BYTES).unwrap();
     assert_eq!(pictures.len(), 3 * 8 * 16);
     let text = page(&Documents { title: "large".to_owned(), error_time: Some(large), pictures, ..Documents::default() }).unwrap();
     assert!(text.len() < 10_000_000, "{} bytes", text.len());
@@ -101,6 +101,57 @@ fn the_same_results_give_the_same_page_and_other_commands_write_theirs() {
     desk.run("report run/result.json -o result.html --quiet");
     desk.run("stability --case needles --rays 500 --hunt 0 --report stability.html --quiet");
     assert!(desk.text("stability.html").contains("<title>Stability</title>"));
+}
+
+#[test]
+fn views_that_were_measured_apart_stand_on_one_page() {
+    let (desk, whole) = desk();
+    let apart = document::by_view(&whole);
+    assert_eq!(apart.len(), 3);
+    let mut joined = apart[0].clone();
+    // Machines stand elsewhere in a document of others.
+    let mut second = apart[1].clone();
+    second.machines.insert(0, lodray::report::result::MachineFacts { label: "another".to_owned(), ..whole.machines[0].clone() });
+    document::costs(&mut second).for_each(|costs| costs.machine += 1);
+    second.equal_error.iter_mut().for_each(|equal| equal.machine += 1);
+    joined.join(second).unwrap();
+    joined.join(apart[2].clone()).unwrap();
+    assert_eq!(joined.machines.pop().unwrap().label, "another");
+    assert_eq!(joined, whole);
+    joined.check().unwrap();
+    // As files, in any folders, with their pictures.
+    for (k, document) in apart.iter().enumerate() {
+        std::fs::create_dir(desk.path(&format!("view-{k}"))).unwrap();
+        desk.write(&format!("view-{k}/error-time.json"), &serde_json::to_string(document).unwrap());
+        for picture in &document.pictures {
+            let to = desk.path(&format!("view-{k}/{}", picture.file));
+            std::fs::create_dir_all(to.parent().unwrap()).unwrap();
+            std::fs::copy(desk.path(&picture.file), to).unwrap();
+        }
+    }
+    desk.run("report view-0/error-time.json view-1/error-time.json view-2/error-time.json -o apart.html --quiet");
+    if let Some(found) = browser::drive(&desk.path("apart.html"), Some(&desk.path("error-time.json"))) {
+        assert!(found.faults.is_empty(), "{:#?}", found.faults);
+        assert!(found.counts["points"] >= 300);
+    }
+    // What does not go together is refused by name, and other figures of the program are said.
+    let refused = |change: &dyn Fn(&mut ErrorTime), why: &str| {
+        let mut other = apart[1].clone();
+        change(&mut other);
+        let said = apart[0].clone().join(other).unwrap_err();
+        assert!(said.contains(why), "{said}");
+    };
+    refused(&|d| d.options.samples.push(64), "other samples");
+    refused(&|d| d.scenes[0].hash = "0".to_owned(), "is another than in one before it");
+    refused(&|d| d.machines[0].description.cores.clock_mhz *= 2, "machine haydel2023 is another");
+    refused(&|d| d.methods[0].knob = None, "method lod is another");
+    refused(&|d| d.views[0].eye = apart[0].views[0].eye, "is in one before it");
+    desk.write(
+        "view-1/error-time.json",
+        &serde_json::to_string(&ErrorTime { program: "lodray 0".to_owned(), ..apart[1].clone() }).unwrap(),
+    );
+    let said = desk.run("report view-0/error-time.json view-1/error-time.json -o apart.html");
+    assert!(said.contains("several versions stand side by side") && said.contains(" and lodray 0"), "{said}");
 }
 
 #[test]
@@ -220,7 +271,7 @@ fn mistakes_are_named_with_file_and_field() {
     desk.refused("report empty.md -o p.html", FAILS, &["empty.md: there is no table in it"]);
     desk.write("stable.json", "{\"widths_checked\": true}");
     desk.refused("report stable.json -o p.html", FAILS, &["stable.json", "the field seed is missing"]);
-    desk.refused("report error-time.json error-time.json -o p.html", FAILS, &["one result of error-time"]);
+    desk.refused("report error-time.json error-time.json -o p.html", FAILS, &["error-time.json: scene ", "is in one before it"]);
     desk.refused("report error-time.json -o error-time.json", FAILS, &["error-time.json"]);
     desk.refused("report -o p.html", USAGE, &["RESULT"]);
     assert!(!desk.path("p.html").exists());

@@ -161,7 +161,7 @@ fn write(folder: &Path, document: &ErrorTime, measured: &[&Measured]) -> anyhow:
 
 /// The page, with the pictures in `folder`.
 fn page(path: &Path, document: ErrorTime, folder: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
-    let pictures = busy("pictures of the page", || embed(&document.pictures, folder, PICTURE_BYTES))?;
+    let pictures = busy("pictures of the page", || embed(&document.picture_files(folder), PICTURE_BYTES))?;
     let documents = Documents { error_time: Some(document), pictures, runs: vec![this_run(inputs)?], ..Documents::default() };
     save(path, &titled(documents)).map(drop)
 }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub struct Args {
-    /// Results: of simulate (--json, or result.json), of sweep (results.jsonl), of stability (stability.json), of error-time (error-time.json), and tables of claims (Markdown)
+    /// Results: of simulate (--json, or result.json), of sweep (results.jsonl), of stability (stability.json), of error-time (error-time.json; several become one, of all their views), and tables of claims (Markdown)
     #[arg(required = true, value_name = "RESULT")]
     results: Vec<PathBuf>,
     /// File for the page (.html)

@@ -2,19 +2,20 @@
 
 use crate::cli::bars::Bars;
 use crate::cli::folder::{Input, Record};
-use crate::cli::output::busy;
+use crate::cli::output::{busy, remark};
 use anyhow::{Context, ensure};
 use lodray::report::error_time::{ErrorTime, KIND};
 use lodray::report::page::{DocumentFacts, Documents, PICTURE_BYTES, RunInput, embed, ledger};
 use lodray::study::{fault_at, results};
 use serde::de::DeserializeOwned;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What the files hold, with the records of the runs that made them.
 pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
     let mut all = Documents::default();
+    let mut files: Vec<PathBuf> = Vec::new();
     for path in paths {
-        add(&mut all, path)?;
+        add(&mut all, &mut files, path)?;
         let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { continue };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         // A record that is none is no reason to have no page.
@@ -25,10 +26,18 @@ pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
             }
         }
     }
+    if let Some(document) = &all.error_time {
+        if document.program.contains(" and ") {
+            remark(&format!("results of several versions stand side by side: {}", document.program))?;
+        }
+        let pictures: Vec<_> = document.pictures.iter().cloned().zip(files).collect();
+        all.pictures = busy("pictures", || embed(&pictures, PICTURE_BYTES))?;
+    }
     Ok(all)
 }
 
-fn add(all: &mut Documents, path: &Path) -> anyhow::Result<()> {
+/// Adds what a file holds; `files` are those of the pictures.
+fn add(all: &mut Documents, files: &mut Vec<PathBuf>, path: &Path) -> anyhow::Result<()> {
     let shown = path.display();
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
     let kind = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
@@ -39,13 +48,17 @@ fn add(all: &mut Documents, path: &Path) -> anyhow::Result<()> {
     } else {
         match Kind::of(&text) {
             Kind::ErrorTime => {
-                ensure!(all.error_time.is_none(), "{shown}: a page shows one result of error-time, and there is one before it");
                 let document: ErrorTime = parsed(&text, path, "no result of error-time")?;
                 document.check().map_err(|why| anyhow::anyhow!("{shown}: {why}"))?;
                 let folder = path.parent().unwrap_or(Path::new(""));
-                all.pictures =
-                    busy("pictures", || embed(&document.pictures, folder, PICTURE_BYTES)).with_context(|| format!("{shown}: pictures"))?;
-                all.error_time = Some(document);
+                for (_, file) in document.picture_files(folder) {
+                    ensure!(file.is_file(), "{shown}: there is no picture {}", file.display());
+                    files.push(file);
+                }
+                match &mut all.error_time {
+                    Some(before) => before.join(document).map_err(|why| anyhow::anyhow!("{shown}: {why}"))?,
+                    none => *none = Some(document),
+                }
                 "error against cost"
             }
             Kind::Stability => {

@@ -4,6 +4,7 @@ use crate::picture::{PictureError, SurfaceError};
 use crate::report::result::MachineFacts;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// What `kind` says of such a document.
 pub const KIND: &str = "error-time";
@@ -60,6 +61,11 @@ impl ErrorTime {
             }
         }
         sizes.join(", ")
+    }
+
+    /// Its pictures, each with its file, where the document lies in `folder`.
+    pub fn picture_files(&self, folder: &Path) -> Vec<(PictureEntry, PathBuf)> {
+        self.pictures.iter().map(|picture| (picture.clone(), folder.join(&picture.file))).collect()
     }
 
     /// Machines and kinds of compute that costs are of, in order.

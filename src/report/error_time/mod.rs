@@ -3,6 +3,7 @@
 mod check;
 mod document;
 mod equal;
+mod join;
 mod measure;
 mod verdict;
 

@@ -13,7 +13,7 @@ use thiserror::Error;
 pub const PICTURE_BYTES: usize = 6_000_000;
 
 /// Longest sides, the largest first.
-const SIDES: [u32; 8] = [1024, 768, 640, 512, 384, 320, 256, 192];
+const SIDES: [u32; 10] = [1024, 768, 640, 512, 384, 320, 256, 192, 128, 96];
 /// Of JPEG, of 100.
 const QUALITY: u8 = 84;
 /// Pictures from which the size of all is told beforehand.
@@ -46,16 +46,16 @@ pub struct PictureFault {
     pub source: ImageError,
 }
 
-/// The pictures in `folder`, in as large a size as `budget` bytes allow for all together; none is enlarged.
+/// The pictures, each with its file, in as large a size as `budget` bytes allow for all together; none is enlarged.
 ///
 /// # Errors
 /// The first picture that cannot be read.
-pub fn embed(entries: &[PictureEntry], folder: &Path, budget: usize) -> Result<Vec<Embedded>, PictureFault> {
-    let step = entries.len().div_ceil(SAMPLE).max(1);
-    let sample = entries.iter().step_by(step).map(|entry| read(&folder.join(&entry.file))).collect::<Result<Vec<_>, _>>()?;
-    let room = budget / entries.len().max(1);
+pub fn embed(pictures: &[(PictureEntry, PathBuf)], budget: usize) -> Result<Vec<Embedded>, PictureFault> {
+    let step = pictures.len().div_ceil(SAMPLE).max(1);
+    let sample = pictures.iter().step_by(step).map(|(_, file)| Ok((read(file)?, file))).collect::<Result<Vec<_>, _>>()?;
+    let room = budget / pictures.len().max(1);
     let mean = |side: u32| -> Result<usize, PictureFault> {
-        let sizes = sample.par_iter().zip(entries).map(|(picture, entry)| Ok(encoded(picture, side, entry)?.2.len()));
+        let sizes = sample.par_iter().map(|(picture, file)| Ok(encoded(picture, side, file)?.2.len()));
         Ok(sizes.collect::<Result<Vec<_>, _>>()?.into_iter().sum::<usize>() / sample.len().max(1))
     };
     let mut first = 0;
@@ -64,7 +64,7 @@ pub fn embed(entries: &[PictureEntry], folder: &Path, budget: usize) -> Result<V
     }
     // The sample may have been of the smaller ones.
     for (k, &side) in SIDES.iter().enumerate().skip(first) {
-        let all = at_side(entries, folder, side)?;
+        let all = at_side(pictures, side)?;
         if k + 1 == SIDES.len() || all.iter().map(|picture| picture.jpeg.len()).sum::<usize>() <= budget {
             return Ok(all);
         }
@@ -72,12 +72,12 @@ pub fn embed(entries: &[PictureEntry], folder: &Path, budget: usize) -> Result<V
     Ok(Vec::new())
 }
 
-fn at_side(entries: &[PictureEntry], folder: &Path, side: u32) -> Result<Vec<Embedded>, PictureFault> {
-    let one = |(k, entry): (usize, &PictureEntry)| {
-        let (width, height, jpeg) = encoded(&read(&folder.join(&entry.file))?, side, entry)?;
+fn at_side(pictures: &[(PictureEntry, PathBuf)], side: u32) -> Result<Vec<Embedded>, PictureFault> {
+    let one = |(k, (entry, file)): (usize, &(PictureEntry, PathBuf))| {
+        let (width, height, jpeg) = encoded(&read(file)?, side, file)?;
         Ok(Embedded { entry: entry.clone(), id: format!("picture-{k}"), width, height, jpeg })
     };
-    entries.par_iter().enumerate().map(one).collect()
+    pictures.par_iter().enumerate().map(one).collect()
 }
 
 fn read(path: &Path) -> Result<RgbImage, PictureFault> {
@@ -86,7 +86,7 @@ fn read(path: &Path) -> Result<RgbImage, PictureFault> {
 }
 
 /// Columns, rows and file.
-fn encoded(picture: &RgbImage, side: u32, entry: &PictureEntry) -> Result<(u32, u32, Vec<u8>), PictureFault> {
+fn encoded(picture: &RgbImage, side: u32, file: &Path) -> Result<(u32, u32, Vec<u8>), PictureFault> {
     let (width, height) = picture.dimensions();
     let longest = width.max(height).max(1);
     let scaled = |length: u32| (u64::from(length) * u64::from(side) / u64::from(longest)).max(1) as u32; // at most `side`
@@ -94,7 +94,7 @@ fn encoded(picture: &RgbImage, side: u32, entry: &PictureEntry) -> Result<(u32, 
     let picture = small.as_ref().unwrap_or(picture);
     let mut jpeg = Vec::new();
     let encoder = JpegEncoder::new_with_quality(&mut jpeg, QUALITY);
-    picture.write_with_encoder(encoder).map_err(|source| PictureFault { file: PathBuf::from(&entry.file), source })?;
+    picture.write_with_encoder(encoder).map_err(|source| PictureFault { file: file.to_owned(), source })?;
     Ok((picture.width(), picture.height(), jpeg))
 }
 
@@ -113,16 +113,17 @@ mod tests {
                 let picture = RgbImage::from_fn(side, side / 2, |x, y| Rgb([noise(x, y, k), noise(y, x, k), 99]));
                 let file = format!("{k}.png");
                 picture.save(folder.path().join(&file)).unwrap();
-                PictureEntry { view: 0, method: "lod".into(), setting: "delta 1".into(), samples: 1, kind: "image".into(), file }
+                let path = folder.path().join(&file);
+                (PictureEntry { view: 0, method: "lod".into(), setting: "delta 1".into(), samples: 1, kind: "image".into(), file }, path)
             })
             .collect();
-        let pictures = embed(&entries, folder.path(), 500_000).unwrap();
+        let pictures = embed(&entries, 500_000).unwrap();
         assert_eq!((pictures[0].width, pictures[0].height), (40, 20));
         assert!(pictures.iter().map(|p| p.jpeg.len()).sum::<usize>() <= 500_000 && pictures[1].width < 600);
         assert_eq!(pictures[1].width, 2 * pictures[1].height);
         assert_eq!(image::load_from_memory(&pictures[3].jpeg).unwrap().width(), pictures[3].width);
-        let gone = [PictureEntry { file: "none.png".into(), ..entries[0].clone() }];
-        assert!(embed(&gone, folder.path(), 1).unwrap_err().to_string().contains("none.png"));
-        assert!(embed(&[], folder.path(), 1).unwrap().is_empty());
+        let gone = [(entries[0].0.clone(), folder.path().join("none.png"))];
+        assert!(embed(&gone, 1).unwrap_err().to_string().contains("none.png"));
+        assert!(embed(&[], 1).unwrap().is_empty());
     }
 }
