@@ -7,6 +7,8 @@ from markdown import among, table
 
 # Errors whose rows are shown; of all errors winners are counted.
 SHOWN = [("surface", 0.25), ("surface", 1), ("flip", 0.01), ("flip", 0.05)]
+# Methods some of whose operations no block does: they take no time.
+PARTLY = ["grid", "cluster", "cluster-paper", "rlod"]
 
 
 def run(args, file, view, machine, point):
@@ -18,13 +20,16 @@ def run(args, file, view, machine, point):
 
 
 def measured(args, files, places, views, best, errors):
-    """By view and error: of each method, or none where it cannot, its setting and its costs, time with compute free, and time and energy by units."""
+    """By view and error that limits something (`best` gives settings): of each method, or none where it cannot, its setting and its costs, time with compute free, and time and energy by units."""
     cases = {}
     for (name, place, machine), points in views.items():
         for kind, levels in errors.items():
             for level in levels:
+                settings = best(points, kind, level)
+                if settings is None:
+                    continue
                 of = cases.setdefault((name, place, machine, kind, level), {})
-                for method, point in best(points, kind, level).items():
+                for method, point in settings.items():
                     of[method] = point and (point, (point["cost"]["milliseconds"], *run(args, files[name], places[name, place], machine, point)))
     return cases
 
@@ -33,19 +38,23 @@ def winners(cases, methods, machine, cost):
     """How often each method is cheapest on a machine."""
     won = dict.fromkeys(methods, 0)
     for (_, _, called, *_), of in cases.items():
-        reached = {method: found[1][cost] for method, found in of.items() if found}
+        reached = {method: found[1][cost] for method, found in of.items() if found and method in methods}
         if called == machine and reached:
             won[min(reached, key=lambda method: (reached[method], methods.index(method)))] += 1
     return won
 
 
+def how_often(cases, methods, columns):
+    """A table: how often each of `methods` is cheapest among them."""
+    won = [winners(cases, methods, *of) for of in columns.values()]
+    return table(["cheapest", *columns], [[f"`{method}`", *(f"{of[method]} of {sum(of.values())}" for of in won)] for method in methods], 1)
+
+
 def by_units(cases, methods, errors):
-    """Two tables: who is cheapest how often, and medians over ours."""
+    """Three tables: who is cheapest how often, of all and of those whose every operation has a block, and medians over ours."""
     machines = list(dict.fromkeys(case[2] for case in cases))
     whats = {"time, compute free": 0, "time": 1, "energy": 2}
-    heads = [f"{what}, {machine}" for machine in machines for what in whats]
-    won = {head: winners(cases, methods, machine, cost) for head, (machine, cost) in zip(heads, ((machine, cost) for machine in machines for cost in whats.values()))}
-    counts = table(["cheapest", *heads], [[f"`{method}`", *(f"{of[method]} of {sum(of.values())}" for of in won.values())] for method in methods], 1)
+    columns = {f"{what}, {machine}": (machine, cost) for machine in machines for what, cost in whats.items()}
     rows = []
     for kind, level in SHOWN:
         for method in methods[1:]:
@@ -56,7 +65,9 @@ def by_units(cases, methods, errors):
                     ratios = [own[1][cost] / ours[1][cost] for own, ours in pairs]
                     cells.append(f"{statistics.median(ratios):.2f} ({among(ratios)})" if ratios else "cannot")
             rows.append([f"{errors[kind]} {level:g}", f"`{method}`", *cells])
-    return "\n\n".join([counts, table(["at most", "method over ours, median (least to most)", *heads], rows, 2)])
+    whole = [method for method in methods if method not in PARTLY]
+    over_ours = table(["at most", "method over ours, median (least to most)", *columns], rows, 2)
+    return "\n\n".join([how_often(cases, methods, columns), "Of methods whose every operation has a block:", how_often(cases, whole, columns), over_ours])
 
 
 def lines(cases, named):

@@ -30,6 +30,8 @@ FINER = {
     "error": [16, 8, 4, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.0625, 0.03, 0.015],
     "pixels": [256, 180, 128, 90, 64, 45, 32, 23, 16, 11, 8, 5.6, 4, 2.8, 2, 1.4, 1],
 }
+# From so many radii on a view counts as far.
+FAR = 16
 # By which knob each is coarse or fine; BVHs have none.
 COARSENESS = {"lod": "delta", "discrete": "level", "grid": "cap", "cluster": "error", "cluster-paper": "pixels", "rlod": "pixels"}
 
@@ -147,6 +149,11 @@ def measured(args, name, place, file):
     return document["views"][0]["eye"], {machine: [own(point, index) for point in document["points"]] for index, machine in enumerate(args.machines)}
 
 
+def limits(points, kind, level):
+    """Whether an error keeps anything out: far away every setting of every method may be within it, and who is cheapest then says nothing of errors."""
+    return any(ERRORS[kind][2](point) > level for point in points)
+
+
 def best(points, kind, level, cost):
     """Of each method its cheapest setting among those that are no worse than `level`; none if it has no such setting."""
     error = ERRORS[kind][2]
@@ -164,7 +171,9 @@ def cheapest(points, kind, level, cost):
 
 
 def winner(points, kind, level, what):
-    """Who is cheapest, and what ours takes over that (none if it has no such setting); none if nobody has one."""
+    """Who is cheapest, and what ours takes over that (none if it has no such setting); none if nobody has one, or if the error limits nothing."""
+    if not limits(points, kind, level):
+        return None
     reached = {method: cost for method, cost in cheapest(points, kind, level, COSTS[what]).items() if cost is not None}
     if not reached:
         return None
@@ -179,14 +188,16 @@ def named(point):
 
 
 def cells(views):
-    """All of it, as lines of CSV: in each view and at each error each method's fastest setting, or that it cannot."""
-    lines = [["scene", "radii", "machine", "error", "at most", "method", "setting", "ms", "uJ", "DRAM lines", "ms, moving", "uJ, moving"]]
+    """All of it, as lines of CSV: in each view and at each error each method's least costs, each with the setting that has it, or that it cannot; and whether the error limits anything."""
+    units = ["ms", "uJ", "DRAM lines", "ms, moving", "uJ, moving"]
+    lines = [["scene", "radii", "machine", "error", "at most", "limits", "method", *(name for unit in units for name in (unit, f"setting of {unit}"))]]
     for view, points in views.items():
         for kind, (_, levels, _) in ERRORS.items():
             for level in levels:
-                for method, point in best(points, kind, level, COSTS["time"]).items():
-                    setting = "cannot" if point is None else named(point)
-                    lines.append([*view, kind, level, method, setting, *("" if point is None else f"{cost(point['cost']):.6g}" for cost in COSTS.values())])
+                of = [best(points, kind, level, cost) for cost in COSTS.values()]
+                for method in of[0]:
+                    found = [(f"{cost(own[method]['cost']):.6g}", named(own[method])) if own[method] else ("cannot", "") for own, cost in zip(of, COSTS.values())]
+                    lines.append([*view, kind, level, "yes" if limits(points, kind, level) else "no", method, *(cell for pair in found for cell in pair)])
     return lines
 
 
@@ -202,7 +213,7 @@ def maps(views, size):
                     won = {view: first for view, points in own.items() if (first := winner(points, kind, level, what))}
                     columns.append((f"{level:g} px" if kind == "surface" else f"FLIP {level:g}", won))
             groups.append((f"least {what}", columns))
-        yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it (-: ours cannot; *: over the mesh that the scene was made from)", list(own), groups)
+        yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it (-: ours cannot; *: over the mesh that the scene was made from; blank: no setting of any is beyond the error)", list(own), groups)
 
 
 def all_over_ours(views, kind):
@@ -217,7 +228,7 @@ def all_over_ours(views, kind):
                 reached = asked = 0
                 for points in views.values():
                     of = cheapest(points, kind, level, COSTS[what])
-                    if method in of and of["lod"] is not None:
+                    if limits(points, kind, level) and method in of and of["lod"] is not None:
                         asked += 1
                         if of[method] is not None:
                             reached += 1
@@ -238,44 +249,72 @@ def wins(views, what):
     return of, sum(of.values())
 
 
+def machines_of(views):
+    """The views of each machine."""
+    return {machine: {view: points for view, points in views.items() if view[2] == machine} for machine in dict.fromkeys(view[2] for view in views)}
+
+
 def counted(views):
-    """How often each method is cheapest."""
-    of = [wins(views, what) for what in COSTS]
-    return table(["cheapest", *COSTS], [[f"`{method}`", *(f"{won[method]} of {total}" for won, total in of)] for method in METHODS], 1)
+    """How often each method is cheapest, on each machine."""
+    of = {f"{what}, {machine}": wins(own, what) for machine, own in machines_of(views).items() for what in COSTS}
+    return table(["cheapest", *of], [[f"`{method}`", *(f"{won[method]} of {total}" for won, total in of.values())] for method in METHODS], 1)
+
+
+def by_machine(views, kind):
+    """What each method takes over ours, on each machine."""
+    return "\n\n".join(f"On `{machine}`:\n\n{all_over_ours(own, kind)}" for machine, own in machines_of(views).items())
 
 
 def short(views, size):
     """What the tables say in a few lines."""
-    scenes, machines = (list(dict.fromkeys(view[k] for view in views)) for k in (0, 2))
-    lines = [f"{len(views) // len(machines)} views of {len(scenes)} scenes on {' and '.join(f'`{machine}`' for machine in machines)}, at six errors each, frames of {size}:", ""]
-    for what in ("time", "energy", "DRAM lines"):
+    scenes, machines = list(dict.fromkeys(view[0] for view in views)), machines_of(views)
+    every = sum(len(levels) for _, levels, _ in ERRORS.values()) * len(views)
+    asked = sum(limits(points, kind, level) for points in views.values() for kind, (_, levels, _) in ERRORS.items() for level in levels)
+    lines = [f"{len(views) // len(machines)} views of {len(scenes)} scenes on {' and '.join(f'`{machine}`' for machine in machines)}, at six errors each, frames of {size}. In {every - asked} of {every} cases every setting of every method is within the error, most of them far away; these are left out here and below.", ""]
+    ranked = lambda of: ", ".join(f"`{method}` {of[method]}" for method in sorted((method for method in METHODS if of[method]), key=lambda method: -of[method]))
+    for machine, own in machines.items():
+        near = {view: points for view, points in own.items() if view[1] == "within" or float(view[1]) < FAR}
+        far = {view: points for view, points in own.items() if view not in near}
         said = []
-        for machine in machines:
-            of, total = wins({view: points for view, points in views.items() if view[2] == machine}, what)
-            ranked = sorted((method for method in METHODS if of[method]), key=lambda method: -of[method])
-            said.append(f"on `{machine}` of {total} cases " + ", ".join(f"`{method}` {of[method]}" for method in ranked))
-        lines.append(f"- **Cheapest in {what}**: " + "; ".join(said) + ".")
-    for level in (0.25, 1):
+        for where, of in ((f"nearer than {FAR} radii and from within", near), (f"from {FAR} radii on", far)):
+            won, total = wins(of, "time")
+            said.append(f"{where}, of {total} cases, {ranked(won)}")
+        lines.append(f"- **Fastest on `{machine}`**: " + "; ".join(said) + ".")
+    for what in ("energy", "DRAM lines"):
+        lines.append(f"- **Least {what}**: " + "; ".join(f"on `{machine}`, of {total} cases, {ranked(won)}" for machine, own in machines.items() for won, total in [wins(own, what)]) + ".")
+    for machine, own in machines.items():
         over = []
         for method in METHODS[1:]:
             pair = []
             for what in ("time", "energy"):
-                both = [(of[method], of["lod"]) for of in (cheapest(points, "surface", level, COSTS[what]) for points in views.values()) if of.get(method) and of["lod"]]
+                both = [(of[method], of["lod"]) for of in (cheapest(points, "surface", 1, COSTS[what]) for points in own.values() if limits(points, "surface", 1)) if of.get(method) and of["lod"]]
                 pair.append(statistics.median(own / ours for own, ours in both) if both else None)
             if pair[0]:
                 over.append(f"`{method}` {pair[0]:.2f} and {pair[1]:.2f}")
-        lines.append(f"- **At {'a quarter of a pixel' if level < 1 else 'a pixel'}**, in the median of the views that both reach, time and energy over ours: " + ", ".join(over) + ".")
+        lines.append(f"- **Within a pixel on `{machine}`**, in the median of the views that both reach, time and energy over ours: " + ", ".join(over) + ".")
     return "\n".join(lines)
 
 
+def defaults(views):
+    """Each method as it is by default, over ours as it is by default: how far off it is, and its costs."""
+    rows = []
+    for machine, own in machines_of(views).items():
+        of = [{point["method"]: point for point in points if point["is_default"]} for points in own.values()]
+        for method in METHODS:
+            found = [(points[method], points["lod"]) for points in of if method in points]
+            off = [_pixels_off(theirs) for theirs, _ in found]
+            costs = [[cost(theirs["cost"]) / max(cost(ours["cost"]), 1e-12) for theirs, ours in found] for cost in (COSTS["time"], COSTS["energy"])]
+            rows.append([f"`{machine}`", f"`{method}`", f"{statistics.median(off):.2f} ({among(off)})", *(f"{statistics.median(ratios):.2f} ({among(ratios)})" for ratios in costs)])
+    return table(["machine", "method", "pixels off (99 of 100), median (least to most)", "time over ours", "energy over ours"], rows, 2)
+
+
 def sizes(views):
-    """Bytes a triangle of each method, by scene."""
+    """Bytes a triangle of each method, by scene: of its settings and views the least and the most."""
     scenes = {}
     for (scene, *_), points in views.items():
-        own = scenes.setdefault(scene, {})
         for point in points:
-            own[point["method"]] = point["bytes_per_triangle"]
-    rows = [[name, *(f"{own[method]:.2f}" if method in own else "" for method in METHODS)] for name, own in scenes.items()]
+            scenes.setdefault(scene, {}).setdefault(point["method"], []).append(point["bytes_per_triangle"])
+    rows = [[name, *(among(own[method]) if method in own else "" for method in METHODS)] for name, own in scenes.items()]
     return table(["bytes a triangle", *(f"`{method}`" for method in METHODS)], rows, 1)
 
 
@@ -295,7 +334,7 @@ def builds(args, scene):
                 said = subprocess.run([args.program, *words, "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout
                 taken = time.monotonic() - from_then if method == "lod" else json.loads(said)["seconds"]["building"]
                 seconds[method] = min(taken, seconds.get(method, math.inf))
-    rows = [[f"`{method}`", f"{own:.2f}", f"{own / seconds['bvh6']:.2f}", "as it was built: boxes and bounds made anew, file read and written" if method == "lod" else "built anew, or refitted" if method.startswith("bvh") else "built anew"] for method, own in seconds.items()]
+    rows = [["`lod`, refitted" if method == "lod" else f"`{method}`", f"{own:.2f}", f"{own / seconds['bvh6']:.2f}", "boxes and bounds made anew, file read and written" if method == "lod" else "built anew, or refitted" if method.startswith("bvh") else "built anew"] for method, own in seconds.items()]
     return table(["method", "seconds", "over `bvh6`", "when vertices move"], rows, 1)
 
 
@@ -362,23 +401,25 @@ def main():
         sys.exit(f"scripts/who-wins: no view is in {args.out} yet")
     # By scene, as people read it.
     views = {(name, place, machine): done[name, place][1][machine] for name in files for place in [*args.distances, "within"] if (name, place) in done for machine in args.machines}
-    texts = {"missing": f"Views that were not measured: {', '.join(missing)}." if missing else "All views were measured.", "short": short(views, args.size), "count": counted(views), "sizes": sizes(views)}
+    texts = {"missing": f"Views that were not measured: {', '.join(missing)}." if missing else "All views were measured.", "short": short(views, args.size), "count": counted(views), "defaults": defaults(views), "sizes": sizes(views)}
     if "terrain" in files:
         texts["builds"] = builds(args, files["terrain"])
     for kind in ERRORS:
-        texts[f"{kind} summary"] = all_over_ours(views, kind)
+        texts[f"{kind} summary"] = by_machine(views, kind)
     if "haydel2023" in args.machines and args.bounces in args.distances:
         own = {name: done[name, args.bounces] for name in files if (name, args.bounces) in done}
         points, eyes = {name: points["haydel2023"] for name, (_, points) in own.items()}, {name: eye for name, (eye, _) in own.items()}
         texts["bounces"] = bounces(args, files, points, eyes, METHODS, ERRORS["surface"][2], named)
         texts["samples"] = by_samples(args, files, points, eyes, METHODS, ERRORS["surface"][2])
-    paged = [folder_of(args, files[name], place) / "error-time.json" for name, place, machine in views if machine == args.machines[0]]
-    subprocess.run([args.program, "--quiet", "report", *paged, "--title", f"Who wins where: {len(files)} scenes, {args.size}", "-o", args.out / "report.html"], check=True)
     places = {(name, place): view_of(name, place) for name, place in done if place in [*args.units, "within"]}
     own = {view: points for view, points in views.items() if view[:2] in places}
     by_name = {kind: levels for kind, (_, levels, _) in ERRORS.items()}
-    cases = measured_by_units(args, files, places, own, lambda points, kind, level: best(points, kind, level, COSTS["time"]), by_name)
+    cases = measured_by_units(args, files, places, own, lambda points, kind, level: best(points, kind, level, COSTS["time"]) if limits(points, kind, level) else None, by_name)
     texts["units"] = by_units(cases, METHODS, {kind: name for kind, (name, *_) in ERRORS.items()})
+    # Pieces of other versions may not go together: the tables do without the page.
+    paged = [folder_of(args, files[name], place) / "error-time.json" for name, place in done]
+    scenes = len({name for name, _ in done})
+    subprocess.run([args.program, "--quiet", "report", *paged, "--title", f"Who wins where: {scenes} scenes, {args.size}", "-o", args.out / "report.html"], check=False)
     if args.print:
         print("\n\n".join([f"{len(views)} views of {len(files)} scenes, {args.size}", *texts.values()]))
         return

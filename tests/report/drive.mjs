@@ -144,7 +144,10 @@ if (doc) {
   // By size of the frame.
   const costBySize = [(c) => c.milliseconds, (c) => c.energy.total, (c) => c.dram_lines];
   const free = (s) => s.costs.find((c) => c.machine === 0 && c.compute === "free");
-  const bySize = doc.sizes.filter((s) => s.method !== "lod").flatMap((s) => costBySize.map((of) => [s.size[0], of(free(s)) / of(free(doc.sizes.find((o) => o.method === "lod" && String(o.size) === String(s.size))))]));
+  // Of the first scene's nearest view that has them.
+  const [{ view: nearest }] = doc.sizes.filter((s) => doc.views[s.view].scene === 0).sort((a, b) => doc.views[a.view].distance - doc.views[b.view].distance);
+  const ofView = doc.sizes.filter((s) => s.view === nearest);
+  const bySize = ofView.filter((s) => s.method !== "lod").flatMap((s) => costBySize.map((of) => [s.size[0], of(free(s)) / of(free(ofView.find((o) => o.method === "lod" && String(o.size) === String(s.size))))]));
   check(bySize.length > 0 && same(sorted(bySize), sorted(await dots("size"))), "the diagram over size is not the document's");
 
   // At equal error.

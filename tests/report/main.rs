@@ -106,31 +106,50 @@ fn the_same_results_give_the_same_page_and_other_commands_write_theirs() {
 #[test]
 fn views_that_were_measured_apart_stand_on_one_page() {
     let (desk, whole) = desk();
-    let apart = document::by_view(&whole);
+    let mut apart = document::by_view(&whole);
     assert_eq!(apart.len(), 3);
-    let mut joined = apart[0].clone();
-    // Machines stand elsewhere in a document of others.
+    // Machines stand elsewhere in a document of others, and methods in another order.
     let mut second = apart[1].clone();
     second.machines.insert(0, lodray::report::result::MachineFacts { label: "another".to_owned(), ..whole.machines[0].clone() });
     document::costs(&mut second).for_each(|costs| costs.machine += 1);
     second.equal_error.iter_mut().for_each(|equal| equal.machine += 1);
-    joined.join(second).unwrap();
-    joined.join(apart[2].clone()).unwrap();
+    second.methods.reverse();
+    let join = |a: &ErrorTime, b: &ErrorTime| a.clone().join(b.clone());
+    let mut joined = join(&join(&apart[0], &second).unwrap(), &apart[2]).unwrap();
     assert_eq!(joined.machines.pop().unwrap().label, "another");
     assert_eq!(joined, whole);
     joined.check().unwrap();
-    // As files, in any folders, with their pictures.
-    for (k, document) in apart.iter().enumerate() {
+    // A scene and a method of its own.
+    second.scenes[0].name = "another".to_owned();
+    second.methods[0].name = "another".to_owned();
+    let two = join(&apart[0], &second).unwrap();
+    assert_eq!((two.scenes.len(), two.views[1].scene, two.methods.len()), (2, 1, whole.methods.len() + 1));
+    two.check().unwrap();
+    // As files, in any folders, with pictures of the same names; each has frames of other sizes.
+    let sizes = apart.iter().find(|document| !document.sizes.is_empty()).unwrap().sizes.clone();
+    for (k, document) in apart.iter_mut().enumerate() {
         std::fs::create_dir(desk.path(&format!("view-{k}"))).unwrap();
-        desk.write(&format!("view-{k}/error-time.json"), &serde_json::to_string(document).unwrap());
-        for picture in &document.pictures {
-            let to = desk.path(&format!("view-{k}/{}", picture.file));
-            std::fs::create_dir_all(to.parent().unwrap()).unwrap();
-            std::fs::copy(desk.path(&picture.file), to).unwrap();
+        for (n, picture) in document.pictures.iter_mut().enumerate() {
+            let file = format!("{n}.png");
+            std::fs::copy(desk.path(&picture.file), desk.path(&format!("view-{k}/{file}"))).unwrap();
+            picture.file = file;
         }
+        document.sizes.clone_from(&sizes);
+        let costs = document.sizes.iter_mut().filter(|size| size.method == "lod").flat_map(|size| &mut size.costs);
+        costs.for_each(|costs| costs.milliseconds *= 1.0 + k as f64);
+        desk.write(&format!("view-{k}/error-time.json"), &serde_json::to_string(document).unwrap());
     }
+    let all = join(&join(&apart[0], &apart[1]).unwrap(), &apart[2]).unwrap();
+    desk.write("all.json", &serde_json::to_string(&all).unwrap());
     desk.run("report view-0/error-time.json view-1/error-time.json view-2/error-time.json -o apart.html --quiet");
-    if let Some(found) = browser::drive(&desk.path("apart.html"), Some(&desk.path("error-time.json"))) {
+    desk.run("report error-time.json -o whole.html --quiet");
+    let pictures = |page: &str| -> Vec<String> {
+        let blocks = desk.text(page);
+        let blocks = blocks.split("<script type=\"text/plain\" id=\"picture-").skip(1);
+        blocks.map(|block| block.split_once("</script>").unwrap().0.to_owned()).collect()
+    };
+    assert!(pictures("apart.html").len() == whole.pictures.len() && pictures("apart.html") == pictures("whole.html"));
+    if let Some(found) = browser::drive(&desk.path("apart.html"), Some(&desk.path("all.json"))) {
         assert!(found.faults.is_empty(), "{:#?}", found.faults);
         assert!(found.counts["points"] >= 300);
     }
@@ -138,18 +157,16 @@ fn views_that_were_measured_apart_stand_on_one_page() {
     let refused = |change: &dyn Fn(&mut ErrorTime), why: &str| {
         let mut other = apart[1].clone();
         change(&mut other);
-        let said = apart[0].clone().join(other).unwrap_err();
+        let said = join(&apart[0], &other).unwrap_err();
         assert!(said.contains(why), "{said}");
     };
-    refused(&|d| d.options.samples.push(64), "other samples");
-    refused(&|d| d.scenes[0].hash = "0".to_owned(), "is another than in one before it");
+    refused(&|d| d.options.samples.push(64), "options.samples is [1,4,64], and [1,4] in a file before it");
+    refused(&|d| d.scenes[0].hash = "0".to_owned(), "is another than in a file before it");
     refused(&|d| d.machines[0].description.cores.clock_mhz *= 2, "machine haydel2023 is another");
-    refused(&|d| d.methods[0].knob = None, "method lod is another");
-    refused(&|d| d.views[0].eye = apart[0].views[0].eye, "is in one before it");
-    desk.write(
-        "view-1/error-time.json",
-        &serde_json::to_string(&ErrorTime { program: "lodray 0".to_owned(), ..apart[1].clone() }).unwrap(),
-    );
+    refused(&|d| d.methods[0].knob = Some("none".to_owned()), "is another than in a file before it");
+    refused(&|d| d.views[0].distance = apart[0].views[0].distance, "radii is in a file before it, too");
+    let other = ErrorTime { program: "lodray 0".to_owned(), ..apart[1].clone() };
+    desk.write("view-1/error-time.json", &serde_json::to_string(&other).unwrap());
     let said = desk.run("report view-0/error-time.json view-1/error-time.json -o apart.html");
     assert!(said.contains("several versions stand side by side") && said.contains(" and lodray 0"), "{said}");
 }
@@ -271,7 +288,7 @@ fn mistakes_are_named_with_file_and_field() {
     desk.refused("report empty.md -o p.html", FAILS, &["empty.md: there is no table in it"]);
     desk.write("stable.json", "{\"widths_checked\": true}");
     desk.refused("report stable.json -o p.html", FAILS, &["stable.json", "the field seed is missing"]);
-    desk.refused("report error-time.json error-time.json -o p.html", FAILS, &["error-time.json: scene ", "is in one before it"]);
+    desk.refused("report error-time.json error-time.json -o p.html", FAILS, &["error-time.json: scene ", "is in a file before it, too"]);
     desk.refused("report error-time.json -o error-time.json", FAILS, &["error-time.json"]);
     desk.refused("report -o p.html", USAGE, &["RESULT"]);
     assert!(!desk.path("p.html").exists());

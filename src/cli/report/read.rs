@@ -26,6 +26,15 @@ pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
             }
         }
     }
+    // Files of one name are told apart by their folders.
+    let names: Vec<_> = all.documents.iter().map(|document| document.name.clone()).collect();
+    for (document, path) in all.documents.iter_mut().zip(paths) {
+        if let Some(folder) = path.parent().and_then(Path::file_name)
+            && names.iter().filter(|name| **name == document.name).count() > 1
+        {
+            document.name = format!("{}/{}", folder.to_string_lossy(), document.name);
+        }
+    }
     if let Some(document) = &all.error_time {
         if document.program.contains(" and ") {
             remark(&format!("results of several versions stand side by side: {}", document.program))?;
@@ -55,10 +64,10 @@ fn add(all: &mut Documents, files: &mut Vec<PathBuf>, path: &Path) -> anyhow::Re
                     ensure!(file.is_file(), "{shown}: there is no picture {}", file.display());
                     files.push(file);
                 }
-                match &mut all.error_time {
+                all.error_time = Some(match all.error_time.take() {
                     Some(before) => before.join(document).map_err(|why| anyhow::anyhow!("{shown}: {why}"))?,
-                    none => *none = Some(document),
-                }
+                    None => document,
+                });
                 "error against cost"
             }
             Kind::Stability => {

@@ -1,26 +1,31 @@
 //! Several documents as one, for a page of views that were measured apart.
 
-use super::document::{ErrorTime, Point};
+use super::document::{ErrorTime, MethodEntry, Options, Point};
+use serde_json::Value;
 
 impl ErrorTime {
-    /// Adds the views of `other`, and scenes, machines and methods that are not here yet. Both must have been checked ([`ErrorTime::check`]).
+    /// Both: the views of the two, and scenes, machines and methods of each once. A page tells views of a scene by their distance, so no two may have the same.
     ///
     /// # Errors
     /// In words: what was asked for is not the same, a name stands for two things, or a view is in both.
-    pub fn join(&mut self, other: Self) -> Result<(), String> {
-        if self.options != other.options {
-            return Err("measured with other samples, size of errors, shading or display".to_owned());
+    ///
+    /// # Panics
+    /// Numbers in `other` name nothing ([`ErrorTime::check`]).
+    pub fn join(mut self, other: Self) -> Result<Self, String> {
+        if let Some((field, own, theirs)) = differing(&self.options, &other.options) {
+            return Err(format!("options.{field} is {theirs}, and {own} in a file before it"));
         }
-        let scenes = merged(&mut self.scenes, other.scenes, |a, b| a.name == b.name, |scene| format!("scene {}", scene.name))?;
-        let machines = merged(&mut self.machines, other.machines, |a, b| a.title() == b.title(), |of| format!("machine {}", of.title()))?;
-        merged(&mut self.methods, other.methods, |a, b| a.name == b.name, |method| format!("method {}", method.name))?;
+        let scenes = merged(&mut self.scenes, other.scenes, |scene| format!("scene {}", scene.name), PartialEq::eq)?;
+        let machines = merged(&mut self.machines, other.machines, |machine| format!("machine {}", machine.title()), PartialEq::eq)?;
+        // What is said of a method changes from version to version.
+        let same = |a: &MethodEntry, b: &MethodEntry| (&a.knob, a.in_steps) == (&b.knob, b.in_steps);
+        merged(&mut self.methods, other.methods, |method| format!("method {}", method.name), same)?;
         let first = self.views.len();
         for mut view in other.views {
             view.scene = scenes[view.scene];
-            let same = |of: &&super::ViewEntry| (of.scene, of.eye, of.size) == (view.scene, view.eye, view.size);
-            if self.views[..first].iter().any(|of| same(&of)) {
+            if self.views[..first].iter().any(|own| (own.scene, own.distance) == (view.scene, view.distance)) {
                 let name = &self.scenes[view.scene].name;
-                return Err(format!("scene {name} from {} radii, {}x{}, is in one before it", view.distance, view.size[0], view.size[1]));
+                return Err(format!("scene {name} from {} radii is in a file before it, too", view.distance));
             }
             self.views.push(view);
         }
@@ -54,15 +59,22 @@ impl ErrorTime {
             grid.view += first;
             grid
         }));
-        Ok(())
+        Ok(self)
     }
 }
 
-/// Adds to `own` what is not in it; where each of `others` stands then. What is alike by name must be alike in all.
-fn merged<T: PartialEq>(own: &mut Vec<T>, others: Vec<T>, alike: fn(&T, &T) -> bool, name: fn(&T) -> String) -> Result<Vec<usize>, String> {
-    let place = |other: T| match own.iter().position(|one| alike(one, &other)) {
-        Some(at) if own[at] == other => Ok(at),
-        Some(_) => Err(format!("{} is another than in one before it", name(&other))),
+/// The first option that is not the same, with both values.
+fn differing(own: &Options, other: &Options) -> Option<(String, Value, Value)> {
+    let [own, other] = [own, other].map(|options| serde_json::to_value(options).unwrap_or_default());
+    let fields = own.as_object()?.iter().map(|(field, value)| (field.clone(), value.clone(), other[field].clone()));
+    fields.into_iter().find(|(_, own, theirs)| own != theirs)
+}
+
+/// Adds to `own` what is not in it; where each of `others` stands then. What has the same name must be the same.
+fn merged<T>(own: &mut Vec<T>, others: Vec<T>, name: fn(&T) -> String, same: fn(&T, &T) -> bool) -> Result<Vec<usize>, String> {
+    let place = |other: T| match own.iter().position(|one| name(one) == name(&other)) {
+        Some(at) if same(&own[at], &other) => Ok(at),
+        Some(_) => Err(format!("{} is another than in a file before it", name(&other))),
         None => {
             own.push(other);
             Ok(own.len() - 1)
@@ -76,11 +88,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_alike_by_name_must_be_alike_in_all() {
+    fn what_has_the_same_name_must_be_the_same() {
         let mut own = vec![("a", 1), ("b", 2)];
-        let join = |own: &mut Vec<_>, others| merged(own, others, |a: &(&str, i32), b| a.0 == b.0, |of| format!("thing {}", of.0));
+        let join = |own: &mut Vec<_>, others| merged(own, others, |of: &(&str, i32)| format!("thing {}", of.0), PartialEq::eq);
         assert_eq!(join(&mut own, vec![("c", 3), ("a", 1)]), Ok(vec![2, 0]));
-        assert_eq!(join(&mut own, vec![("b", 3)]), Err("thing b is another than in one before it".to_owned()));
+        assert_eq!(join(&mut own, vec![("b", 3)]), Err("thing b is another than in a file before it".to_owned()));
         assert_eq!(own.len(), 3);
     }
 }

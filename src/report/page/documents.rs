@@ -83,7 +83,7 @@ pub struct RunInput {
 pub struct DocumentFacts {
     /// What it is, such as `results of a sweep`.
     pub kind: String,
-    /// Its name, without folders.
+    /// Its name, without folders; with the one that it lies in where another has the same name.
     pub name: String,
     /// Its size.
     pub bytes: u64,

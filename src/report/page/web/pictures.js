@@ -23,7 +23,7 @@ function picturesSection(section, state) {
   const own = { view: null, a: null, b: null, at: 50, pixel: null };
   const body = h("div", {});
   let traces;
-  const viewsOf = () => doc.views.map((v, k) => ({ ...v, k, scene: doc.scenes[v.scene] })).filter((v) => v.scene.name === state.scene && page.pictures.some((p) => p.view === v.k));
+  const viewsOf = () => doc.views.map((v, k) => ({ ...v, k, scene: doc.scenes[v.scene] })).filter((v) => v.scene.name === state.scene && page.pictures.some((p) => p.view === v.k)).sort(by((v) => v.distance));
   const draw = () => {
     const views = viewsOf();
     if (!views.length) return body.replaceChildren(h("p", { class: "note" }, "There are no pictures of this scene."));

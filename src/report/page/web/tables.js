@@ -47,7 +47,7 @@ function leftOutSection(section, state) {
     const all = doc.left_out.map((l) => {
       const costs = l.point.costs.find((c) => target([doc.machines[c.machine].label, ...doc.machines[c.machine].set].join(" "), c.compute) === state.machine);
       return { ...l, v: doc.views[l.point.view], costs };
-    }).filter((l) => l.costs && doc.scenes[l.v.scene].name === state.scene);
+    }).filter((l) => l.costs && doc.scenes[l.v.scene].name === state.scene).sort(by((l) => l.v.distance));
     if (!all.length) return body.replaceChildren(h("p", { class: "note" }, "None for this scene and machine."));
     const whole = (l) => all.find((other) => other.point.view === l.point.view && other.what === "whole");
     const over = (of) => ({ value: (l) => of(l) / of(whole(l)), show: (l) => num(of(l) / of(whole(l)), 3) });
@@ -96,10 +96,12 @@ function ledgerSection(section) {
 function runSection(section) {
   const facts = (pairs) => h("dl", { class: "facts" }, pairs.filter(([, b]) => b != null && b !== "").map(([a, b]) => [h("dt", {}, a), h("dd", {}, b)]));
   const quote = (word) => (/^[\w.,:=\/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
-  for (const run of page.runs) {
+  // Of many, one below the other would hide what comes after.
+  const cards = page.runs.map((run) => {
     const inputs = run.inputs.map((i) => h("div", {}, h("code", {}, i.name), `, ${num(i.bytes)} bytes, XXH3 `, h("code", {}, i.xxh3)));
-    section.append(h("div", { class: "card" }, facts([["command", h("code", {}, ["lodray", run.command, ...run.arguments].map(quote).join(" "))], ["version", run.lodray], ["inputs", inputs.length ? inputs : null], ["notes", run.notes?.length ? run.notes.map((n) => h("div", {}, n)) : null]])));
-  }
+    return h("div", { class: "card" }, facts([["command", h("code", {}, ["lodray", run.command, ...run.arguments].map(quote).join(" "))], ["version", run.lodray], ["inputs", inputs.length ? inputs : null], ["notes", run.notes?.length ? run.notes.map((n) => h("div", {}, n)) : null]]));
+  });
+  section.append(...(cards.length > 4 ? [h("details", {}, h("summary", {}, count(cards.length, "run")), cards)] : cards));
   if (page.documents.length) section.append(h("h3", {}, "What this page shows"), h("div", { class: "card" }, facts(page.documents.map((d) => [d.kind, [h("code", {}, d.name), `, ${num(d.bytes)} bytes, XXH3 `, h("code", {}, d.xxh3)]]))));
   const doc = page.error_time;
   if (doc) {

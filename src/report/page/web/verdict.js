@@ -90,13 +90,17 @@ function glance(state) {
 function sizeSection(section, state) {
   const doc = page.error_time;
   const body = h("div", {});
+  const own = { view: null };
   const names = [["time", (c) => c.milliseconds], ["energy", (c) => c.energy.total], ["DRAM lines", (c) => c.dram_lines]];
   const draw = () => {
-    const all = doc.sizes.flatMap((s) => {
+    const measured = doc.sizes.flatMap((s) => {
       const view = doc.views[s.view];
       const costs = s.costs.find((c) => target([doc.machines[c.machine].label, ...doc.machines[c.machine].set].join(" "), c.compute) === state.machine);
       return costs && doc.scenes[view.scene].name === state.scene ? [{ ...s, distance: view.distance, costs }] : [];
-    });
+    }).sort(by((s) => s.distance));
+    const views = unique(measured.map((s) => s.view));
+    own.view = views.includes(own.view) ? own.view : views[0];
+    const all = measured.filter((s) => s.view === own.view);
     const ours = (s) => all.find((o) => isOurs(o.method) && String(o.size) === String(s.size));
     const rows = names.map(([name, of]) => all.filter((s) => !isOurs(s.method) && ours(s)).map((s) => {
       const ratio = of(s.costs) / of(ours(s).costs);
@@ -106,9 +110,10 @@ function sizeSection(section, state) {
     if (!rows[0].length) return body.replaceChildren(h("p", { class: "note" }, "Not measured for this scene and machine."));
     const columns = [{ name: "columns", value: (r) => r.size[0] }, { name: "rows", value: (r) => r.size[1] }, { name: "method", value: (r) => r.method }, { name: "setting", value: (r) => r.point.setting }, { name: "ours", value: (r) => r.ours }, { name: "cost", value: (r) => r.name }, { name: "over ours", value: (r) => r.y, show: (r) => num(r.y, 4) }];
     body.replaceChildren(
+      ...(views.length > 1 ? [h("div", { class: "controls" }, choice("Distance", views.map((view) => [view, `${num(doc.views[view].distance)} radii`]), own.view, (view) => ((own.view = Number(view)), draw())))] : []),
       keys(unique(rows[0].map((r) => r.method))),
       h("div", { class: "triple" }, rows.map((of) => lineDiagram(of, { title: `${of[0].name} over ours`, small: `${state.scene} from ${num(all[0].distance)} radii, ${sizeWords(all.map((s) => s.size))}`, x: "columns of the frame", state }))),
-      dataTable(`Costs over ours by size, ${state.scene}`, columns, rows.flat()),
+      dataTable(`Costs over ours by size, ${state.scene}, ${num(all[0].distance)} radii`, columns, rows.flat()),
     );
   };
   section.append(h("p", {}, "The same view in frames of several sizes, each method as it is by default: ours at delta 1, discrete at the level that its own rule chooses. Above 1 ours is cheaper. Fewer pixels mean coarser levels of detail, and the same full resolution."), body);
