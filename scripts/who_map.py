@@ -9,16 +9,17 @@ CELL, ROW, LEFT, TOP, GAP = 64, 19, 168, 62, 14
 SHORT = {"discrete": "level", "cluster-paper": "paper's", "input-bvh": "bvh*", "input-bvh6": "bvh6*"}
 
 
-def drawn(title, views, groups):
-    """An SVG: a row for each view, by name; `groups` are blocks of columns side by side, each a name and its columns, each a name and by view the cheapest method with what ours takes over it (None if ours cannot)."""
+def drawn(title, note, views, groups):
+    """An SVG, with `note` below: a row for each view, by name; `groups` are blocks of columns side by side, each a name and its columns, each a name and by view the cheapest method with what ours takes over it (None if ours cannot)."""
     # On light paper some are too dark to be told apart as areas.
     of = styles(dark=True)
     wide = LEFT + sum(len(columns) * CELL + GAP for _, columns in groups)
-    tall = TOP + len(views) * ROW + 8
+    tall = TOP + len(views) * ROW + 26
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {tall}" font-family="sans-serif" font-size="10" fill="#464c56">']
     out.append(f'<rect width="{wide}" height="{tall}" fill="white"/><text x="8" y="18" font-size="13">{escape(title)}</text>')
     for k, view in enumerate(views):
         out.append(f'<text x="{LEFT - 6}" y="{TOP + k * ROW + 13}" text-anchor="end" font-size="11">{escape(view)}</text>')
+    out.append(f'<text x="8" y="{tall - 9}" font-size="11">{escape(note)}</text>')
     left = LEFT
     for name, columns in groups:
         out.append(f'<text x="{left + len(columns) * CELL / 2:.0f}" y="38" text-anchor="middle" font-size="12">{escape(name)}</text>')

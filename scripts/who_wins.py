@@ -213,7 +213,7 @@ def maps(views, size):
                     won = {view: first for view, points in own.items() if (first := winner(points, kind, level, what))}
                     columns.append((f"{level:g} px" if kind == "surface" else f"FLIP {level:g}", won))
             groups.append((f"least {what}", columns))
-        yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it (-: ours cannot; *: over the mesh that the scene was made from; blank: no setting of any is beyond the error)", list(own), groups)
+        yield f"who-wins-{machine}", drawn(f"The cheapest on {machine}, {size}, and what ours takes over it", "-: ours cannot. *: over the mesh that the scene was made from. Blank: every setting of every method is within the error.", list(own), groups)
 
 
 def all_over_ours(views, kind):
@@ -302,9 +302,12 @@ def defaults(views):
         of = [{point["method"]: point for point in points if point["is_default"]} for points in own.values()]
         for method in METHODS:
             found = [(points[method], points["lod"]) for points in of if method in points]
+            # A default that no sweep has.
+            if len(found) < sum(any(point["method"] == method for point in points) for points in own.values()) or not found:
+                continue
             off = [_pixels_off(theirs) for theirs, _ in found]
             costs = [[cost(theirs["cost"]) / max(cost(ours["cost"]), 1e-12) for theirs, ours in found] for cost in (COSTS["time"], COSTS["energy"])]
-            rows.append([f"`{machine}`", f"`{method}`", f"{statistics.median(off):.2f} ({among(off)})", *(f"{statistics.median(ratios):.2f} ({among(ratios)})" for ratios in costs)])
+            rows.append([f"`{machine}`", f"`{method}`", f"{statistics.median(off):.2f} ({among(off)})".replace("inf", "no hit"), *(f"{statistics.median(ratios):.2f} ({among(ratios)})" for ratios in costs)])
     return table(["machine", "method", "pixels off (99 of 100), median (least to most)", "time over ours", "energy over ours"], rows, 2)
 
 
