@@ -368,7 +368,7 @@ def main():
     parser.add_argument("--distances", type=distances, default="0.8,1.2,2,4,8,16,32,64", help="distances of the eye in radii, with commas (default: eight from 0.8 to 64)")
     parser.add_argument("--machines", type=lambda text: text.split(","), default=["haydel2023", "turing2018"], help="machines, with commas (default haydel2023,turing2018)")
     parser.add_argument("--bounces", default="4", help="distance, one of the others, at which rays that follow and more samples are measured too (default 4)")
-    parser.add_argument("--units", type=distances, default="1.2,4,16", help="distances, of the others, that are measured by units too, beside views from within (default 1.2,4,16)")
+    parser.add_argument("--units", type=distances, default="1.2,4,8,16,32,64", help="distances, of the others, that are measured by units too, beside views from within (default 1.2,4,8,16,32,64)")
     parser.add_argument("--out", type=Path, default=Path("target/who-wins"), help="folder in which pieces are kept; a run that is started again goes on with it (default target/who-wins)")
     parser.add_argument("--shard", default="1/1", help="measure the K-th of N parts alone, K/N, and write no tables (default: all)")
     parser.add_argument("--so-far", action="store_true", help="tables of the views that are there, and which are not: no other is measured")
