@@ -26,7 +26,7 @@ pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
             }
         }
     }
-    // Files of one name are told apart by their folders.
+    // Where two files have the same name, show their folders too.
     let names: Vec<_> = all.documents.iter().map(|document| document.name.clone()).collect();
     for (document, path) in all.documents.iter_mut().zip(paths) {
         if let Some(folder) = path.parent().and_then(Path::file_name)

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Bytes of all pictures of a page: in base64 they take a third more, and the page stays below 10 MB.
+/// Bytes of all pictures of a page: in base64 they take a third more, and the page of one run stays below 10 MB.
 pub const PICTURE_BYTES: usize = 6_000_000;
 
 /// Longest sides, the largest first.
