@@ -19,3 +19,8 @@ def kept(args, words):
         part.write_text(run.stdout, encoding="utf-8")
         part.rename(path)
     return json.loads(path.read_text(encoding="utf-8"))
+
+
+def knobs(point):
+    """The options that choose the setting of a point of `error-time`. What all rays share is no choice of a method."""
+    return [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]

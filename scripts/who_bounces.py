@@ -4,7 +4,7 @@ import json
 import statistics
 import subprocess
 
-from keep import kept
+from keep import kept, knobs
 from markdown import among, table
 
 # A hit is off by at most so many pixels (99 of 100): the setting that primary rays choose is what the others have.
@@ -43,9 +43,8 @@ def description(args, name, file, eye, shadow, samples, depth):
 
 def run(args, name, file, eye, point, shadow=False, samples=1, depth=1):
     """Milliseconds and energy up to each bounce."""
-    options = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
     described = description(args, name, file, eye, shadow, samples, depth)
-    found = kept(args, ["--quiet", "paths", described, "--method", point["method"], *options, "--machine", "haydel2023", "-o", args.out / "paths", "--force"])
+    found = kept(args, ["--quiet", "paths", described, "--method", point["method"], *knobs(point), "--machine", "haydel2023", "-o", args.out / "paths", "--force"])
     return [(up_to["milliseconds"], up_to["energy"]) for up_to in found]
 
 

@@ -2,7 +2,7 @@
 
 import statistics
 
-from keep import kept
+from keep import kept, knobs
 from markdown import among, table
 from who_bounces import fastest, run
 
@@ -12,8 +12,7 @@ SAMPLES = [1, 4, 16]
 
 def standing(args, file, point):
     """Milliseconds and energy of the second of two frames that are the same: its caches hold what the first left."""
-    knobs = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
-    found = kept(args, ["--quiet", "simulate", file, "--distance", args.bounces, "--size", args.size, "--machine", "haydel2023", "--compute", "free", "--method", point["method"], *knobs, "--frames", "2", "--turn", "0"])
+    found = kept(args, ["--quiet", "simulate", file, "--distance", args.bounces, "--size", args.size, "--machine", "haydel2023", "--compute", "free", "--method", point["method"], *knobs(point), "--frames", "2", "--turn", "0"])
     return found["warm"]["cycles"] / found["cycles"] * found["milliseconds"], found["warm"]["energy"]
 
 

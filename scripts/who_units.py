@@ -2,7 +2,7 @@
 
 import statistics
 
-from keep import kept
+from keep import kept, knobs
 from markdown import among, table
 
 # Errors whose rows are shown; of all errors winners are counted.
@@ -13,9 +13,7 @@ PARTLY = ["grid", "cluster", "cluster-paper", "rlod"]
 
 def run(args, file, view, machine, point):
     """A setting by units: milliseconds and energy."""
-    # What all rays share is no choice of a method.
-    knobs = [word for knob, value in point["knobs"].items() if knob != "packet" for word in (f"--{knob}", value)]
-    found = kept(args, ["--quiet", "simulate", file, *view, "--size", args.size, "--machine", machine, "--compute", "units", "--method", point["method"], *knobs])
+    found = kept(args, ["--quiet", "simulate", file, *view, "--size", args.size, "--machine", machine, "--compute", "units", "--method", point["method"], *knobs(point)])
     return found["milliseconds"], found["energy"]["total"]
 
 
