@@ -1,6 +1,6 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,7 +25,8 @@ HIT: np.dtype[np.void]
 RAY: np.dtype[np.void]
 
 _Path = str | PathLike[str]
-_Triple = tuple[float, float, float] | Sequence[float]
+_Triple = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
+_Size = Sequence[int] | NDArray[np.integer[Any]]
 _Progress = Callable[[str, int, int | None], object]
 _Machine = Machine | _Path | dict[str, Any]
 
@@ -48,6 +49,11 @@ class Camera:
     @property
     def cone(self) -> float: ...
     def rays(self) -> NDArray[np.void]: ...
+    def __copy__(self) -> Camera: ...
+    def __deepcopy__(self, _memo: Any, /) -> Camera: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class MachinePart:
@@ -64,6 +70,11 @@ class Machine:
     def set(self, changes: dict[str, Any]) -> None: ...
     def copy(self) -> Machine: ...
     def to_dict(self) -> dict[str, Any]: ...
+    def __copy__(self) -> Machine: ...
+    def __deepcopy__(self, _memo: Any, /) -> Machine: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __reduce__(self) -> tuple[Any, ...]: ...
     def __getattr__(self, name: str) -> Any: ...
     def __setattr__(self, name: str, value: object, /) -> None: ...
     def __dir__(self) -> list[str]: ...
@@ -234,7 +245,7 @@ class Scene:
     def camera(
         self,
         *,
-        size: tuple[int, int] = ...,
+        size: _Size = ...,
         distance: float | None = None,
         eye: _Triple | None = None,
         target: _Triple | None = None,
@@ -272,11 +283,11 @@ class Scene:
         self,
         distances: Sequence[float],
         *,
-        size: tuple[int, int] = ...,
+        size: _Size = ...,
         methods: Sequence[str] = ...,
         machine: _Machine | Sequence[_Machine] | None = None,
         compute: str = "free",
-        values: Mapping[str, Sequence[Any]] | None = None,
+        values: dict[str, Any] | None = None,
         samples: int = 1,
         error_size: int = 192,
         most_samples: int = 0,
@@ -287,7 +298,7 @@ class Scene:
         self,
         distances: Sequence[float] = ...,
         *,
-        size: tuple[int, int] = ...,
+        size: _Size = ...,
         delta: float = 1.0,
         progress: _Progress | None = None,
     ) -> dict[str, Any]: ...
@@ -299,7 +310,7 @@ def paths(
     models: Sequence[Scene] | None = None,
     *,
     camera: str | None = None,
-    size: tuple[int, int] | None = None,
+    size: _Size | None = None,
     samples: int | None = None,
     depth: int | None = None,
     seed: int | None = None,

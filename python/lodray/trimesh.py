@@ -44,7 +44,7 @@ class RayMeshIntersector:
         self._made: tuple[int, SceneMethod, NDArray[np.int64]] | None = None
 
     def intersects_location(
-        self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True, **_: Any
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         """Where rays meet the mesh: (locations, index_ray, index_tri) of shapes (h, 3), (h,) and (h,).
 
@@ -61,7 +61,6 @@ class RayMeshIntersector:
         multiple_hits: bool = True,
         max_hits: int | None = None,
         return_locations: Literal[False] = False,
-        **_: Any,
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
 
     @overload
@@ -73,7 +72,6 @@ class RayMeshIntersector:
         max_hits: int | None = None,
         *,
         return_locations: Literal[True],
-        **_: Any,
     ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]: ...
 
     def intersects_id(
@@ -83,13 +81,13 @@ class RayMeshIntersector:
         multiple_hits: bool = True,
         max_hits: int | None = None,
         return_locations: bool = False,
-        **_: Any,
     ) -> Any:
         """Which faces rays meet: (index_tri, index_ray), and the locations behind them if wanted, of shapes (h,), (h,) and (h, 3).
 
         max_hits: the first so many of each ray; all if None.
         """
-        hits, index_ray = self._hits(ray_origins, ray_directions, multiple_hits)
+        rays = _Rays(ray_origins, ray_directions)
+        hits, index_ray = self._hits(rays, multiple_hits)
         if max_hits is not None and len(index_ray) > 0:
             first = np.searchsorted(index_ray, index_ray)
             near = np.arange(len(index_ray)) - first < max_hits
@@ -99,24 +97,26 @@ class RayMeshIntersector:
             return index_tri, index_ray, np.ascontiguousarray(hits["point"])
         return index_tri, index_ray
 
-    def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **_: Any) -> NDArray[np.int64]:
+    def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int64]:
         """The face that each ray meets first, -1 without one: shape (n,)."""
-        hits, index_ray = self._hits(ray_origins, ray_directions, False)
-        first = np.full(len(np.atleast_2d(np.asarray(ray_origins))), -1, dtype=np.int64)
+        rays = _Rays(ray_origins, ray_directions)
+        hits, index_ray = self._hits(rays, False)
+        first = np.full(rays.given, -1, dtype=np.int64)
         first[index_ray] = self._faces(hits)
         return first
 
-    def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **_: Any) -> NDArray[np.bool_]:
+    def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Whether each ray meets anything: shape (n,)."""
-        origins, directions, rays = _rays(ray_origins, ray_directions)
-        met = np.zeros(len(np.atleast_2d(np.asarray(ray_origins))), dtype=np.bool_)
+        rays = _Rays(ray_origins, ray_directions)
+        met = np.zeros(rays.given, dtype=np.bool_)
         method = self._method()
-        if method is not None and len(rays) > 0:
-            origins = self._begun(origins, directions)
+        if method is not None and len(rays.numbers) > 0:
+            directions = rays.directions
+            origins = self._begun(rays.origins, directions)
             missed = ~method.occluded(origins, directions)
             for moved, those in self._moved(origins, directions, missed):
                 missed[those] = ~method.occluded(moved, directions[those])
-            met[rays] = ~missed
+            met[rays.numbers] = ~missed
         return met
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
@@ -124,7 +124,7 @@ class RayMeshIntersector:
 
         Of a mesh that is not closed, it is what trimesh makes of rays in both directions.
         """
-        places = np.asanyarray(points, dtype=np.float64)
+        places = _numbers("points", points)
         if places.ndim != 2 or places.shape[1] != 3:
             raise ValueError("points must be (n,3)")
         if not self.mesh.is_watertight:
@@ -166,14 +166,13 @@ class RayMeshIntersector:
         faces: NDArray[np.int64] = self._made[2][hits["triangle"]]
         return faces
 
-    def _hits(self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple: bool) -> tuple[NDArray[np.void], NDArray[np.int64]]:
+    def _hits(self, rays: _Rays, multiple: bool) -> tuple[NDArray[np.void], NDArray[np.int64]]:
         """Hits, and whose they are, sorted."""
-        origins, directions, rays = _rays(ray_origins, ray_directions)
         method = self._method()
-        if method is None or len(rays) == 0:
+        if method is None or len(rays.numbers) == 0:
             return np.zeros(0, dtype=HIT), np.zeros(0, dtype=np.int64)
-
-        origins = self._begun(origins, directions)
+        directions = rays.directions
+        origins = self._begun(rays.origins, directions)
 
         def cast(origins: NDArray[np.float64], directions: NDArray[np.float64]) -> tuple[NDArray[np.void], NDArray[np.int64]]:
             if multiple:
@@ -183,7 +182,7 @@ class RayMeshIntersector:
             return hits[met], met
 
         hits, of = cast(origins, directions)
-        missed = np.ones(len(rays), dtype=np.bool_)
+        missed = np.ones(len(rays.numbers), dtype=np.bool_)
         missed[of] = False
         for moved, those in self._moved(origins, directions, missed):
             more, own = cast(moved, directions[those])
@@ -192,7 +191,7 @@ class RayMeshIntersector:
                 hits, of = np.concatenate([hits, more]), np.concatenate([of, those[own]])
                 order = np.argsort(of, kind="stable")
                 hits, of = hits[order], of[order]
-        return hits, rays[of]
+        return hits, rays.numbers[of]
 
     def _step(self) -> float:
         lo, hi = self.mesh.bounds
@@ -240,19 +239,43 @@ class RayMeshIntersector:
         return self.__copy__()
 
 
-def _rays(origins: ArrayLike, directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
-    """Rays that can be, and their numbers."""
-    both = [np.atleast_2d(np.ascontiguousarray(of, dtype=np.float64)) for of in (origins, directions)]
-    if both[0].shape != both[1].shape:
-        raise LodrayError("Ray origin and direction don't match!")
-    if both[0].size == 0:
-        return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
-    finite = np.isfinite(np.concatenate(both, axis=1)).all(axis=1)
-    fine: NDArray[np.bool_] = np.logical_and(finite, both[1].any(axis=1))
-    rays = np.flatnonzero(fine)
-    if len(rays) == len(fine):
-        return both[0], both[1], rays
-    return both[0][rays], both[1][rays], rays
+class _Rays:
+    """Rays that can be, of those that were given, and their numbers among these."""
+
+    def __init__(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> None:
+        origins, directions = _vectors("ray_origins", ray_origins), _vectors("ray_directions", ray_directions)
+        if origins.shape != directions.shape:
+            raise LodrayError("Ray origin and direction don't match!")
+        self.given = len(origins)
+        finite = np.isfinite(np.concatenate([origins, directions], axis=1)).all(axis=1)
+        fine: NDArray[np.bool_] = np.logical_and(finite, directions.any(axis=1))
+        self.numbers = np.flatnonzero(fine)
+        all_fine = len(self.numbers) == self.given
+        self.origins = origins if all_fine else origins[self.numbers]
+        self.directions = directions if all_fine else directions[self.numbers]
+
+
+def _vectors(of: str, given: ArrayLike) -> NDArray[np.float64]:
+    """Vectors of shape (n, 3), of an array of that shape, of a single vector, or of nothing."""
+    array = _numbers(of, given)
+    if array.size == 0 and array.ndim < 3:
+        return np.zeros((0, 3))
+    if array.ndim not in (1, 2) or array.shape[-1] != 3:
+        raise LodrayError(f"{of}: an array of shape {array.shape}, not (n, 3)")
+    return array.reshape(-1, 3)
+
+
+def _numbers(of: str, given: ArrayLike) -> NDArray[np.float64]:
+    """An array of numbers: of what is none the package's own calls say the same."""
+    try:
+        array = np.asanyarray(given)
+    except (TypeError, ValueError) as error:
+        raise LodrayError(f"{of}: {error}") from error
+    if np.ma.is_masked(array):
+        raise LodrayError(f"{of}: entries of it are masked")
+    if array.dtype.kind not in "iuf":
+        raise LodrayError(f"{of}: of type {array.dtype}, not of numbers")
+    return np.ascontiguousarray(array, dtype=np.float64)
 
 
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

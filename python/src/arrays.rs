@@ -5,8 +5,9 @@ use lodray::rays::{Column, RAY_COLUMNS, RayRows};
 use lodray::run::HitRow;
 use npyz::{AutoSerialize, Serialize, TypeWrite};
 use numpy::{Element, PyArray1, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyFloat, PyInt};
 use rayon::prelude::*;
 
 /// Columns of each row that there are files of.
@@ -42,12 +43,70 @@ pub struct Asked<'py> {
     pub t_max: Option<Bound<'py, PyAny>>,
 }
 
+/// Numbers that arrays are read as.
+pub trait Read: Element {
+    /// The type as NumPy names it.
+    const DTYPE: &'static str;
+    /// Kinds of types, as NumPy names them, that are such numbers: without this, dates and texts would be cast, and parts of complex numbers be lost.
+    const KINDS: &'static str;
+    /// What they are called.
+    const WORDS: &'static str;
+}
+
+impl Read for f64 {
+    const DTYPE: &'static str = "f8";
+    const KINDS: &'static str = "iuf";
+    const WORDS: &'static str = "numbers";
+}
+
+impl Read for i64 {
+    const DTYPE: &'static str = "i8";
+    const KINDS: &'static str = "iu";
+    const WORDS: &'static str = "whole numbers";
+}
+
 /// An array as contiguous values of a type: itself if it is one. `of` names it in errors.
-pub fn contiguous<'py, T: Element>(of: &str, array: &Bound<'py, PyAny>, dtype: &str) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
-    let numpy = array.py().import("numpy")?;
-    let made = numpy.call_method1("require", (array, dtype, ("C_CONTIGUOUS", "ALIGNED")));
-    let made = made.map_err(|error| refused(format!("{of}: {}", error.value(array.py()))))?;
+pub fn contiguous<'py, T: Read>(of: &str, array: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    let (py, numpy) = (array.py(), array.py().import("numpy")?);
+    let named = |error: PyErr| {
+        // Others, such as KeyboardInterrupt and MemoryError, say nothing of the array.
+        if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py) {
+            return error;
+        }
+        let said = refused(format!("{of}: {}", error.value(py)));
+        said.set_cause(py, Some(error));
+        said
+    };
+    let made = numpy.call_method1("asanyarray", (array,)).map_err(named)?;
+    unmasked(of, &made)?;
+    let dtype = made.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    // To NumPy whole numbers of more than 64 bits are objects.
+    let fits = T::KINDS.contains(&kind) || (kind == "O" && T::KINDS.contains('f') && are_real(&made)?);
+    if !fits {
+        return Err(refused(format!("{of}: of type {dtype}, not of {}", T::WORDS)));
+    }
+    let made = numpy.call_method1("require", (made, T::DTYPE, ("C_CONTIGUOUS", "ALIGNED"))).map_err(named)?;
     made.extract().map_err(|_| refused(format!("{of}: no array of numbers")))
+}
+
+/// Whether all objects of an array are real numbers.
+fn are_real(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let real = array.py().import("numbers")?.getattr("Real")?;
+    for object in array.getattr("flat")?.try_iter()? {
+        if !object?.is_instance(&real)? {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Refuses an array of which entries are masked.
+fn unmasked(of: &str, array: &Bound<'_, PyAny>) -> PyResult<()> {
+    let mask = array.py().import("numpy.ma")?.call_method1("getmask", (array,))?;
+    // Of structured arrays masks have fields too: their bytes do not.
+    let masked = mask.call_method0("tobytes")?.extract::<Vec<u8>>()?.contains(&1);
+    if masked { Err(refused(format!("{of}: entries of it are masked"))) } else { Ok(()) }
 }
 
 /// The numbers of an array of shape (n, 3), three by three.
@@ -78,7 +137,7 @@ impl<'py> Rays<'py> {
     }
 
     fn apart(&mut self, origins: &Bound<'py, PyAny>, directions: &Bound<'py, PyAny>) -> PyResult<()> {
-        let [origins, directions] = [("origins", origins), ("directions", directions)].map(|(of, array)| contiguous(of, array, "f8"));
+        let [origins, directions] = [("origins", origins), ("directions", directions)].map(|(of, array)| contiguous(of, array));
         let both = [origins?, directions?];
         let shapes = [both[0].shape().to_vec(), both[1].shape().to_vec()];
         for (k, (of, array)) in ["origins", "directions"].into_iter().zip(both).enumerate() {
@@ -102,8 +161,9 @@ impl<'py> Rays<'py> {
     }
 
     fn together(&mut self, rays: &Bound<'py, PyAny>) -> PyResult<()> {
-        let names = rays.getattr_opt("dtype")?.map(|dtype| dtype.getattr("names")).transpose()?;
-        let array = if names.is_some_and(|names| !names.is_none()) { rows_of(rays)? } else { contiguous("rays", rays, "f8")? };
+        // Arrays of other packages have types without names.
+        let names = rays.getattr_opt("dtype")?.map(|dtype| dtype.getattr_opt("names")).transpose()?.flatten();
+        let array = if names.is_some_and(|names| !names.is_none()) { rows_of(rays)? } else { contiguous("rays", rays)? };
         let width = match *array.shape() {
             [_, width] if WIDTHS.contains(&width) => width,
             [_, 3] => return Err(refused("directions: missing; rays in one array have 6, 8, 10, 11 or 12 columns")),
@@ -115,12 +175,16 @@ impl<'py> Rays<'py> {
     }
 
     fn column(&mut self, name: &str, column: usize, value: &Bound<'py, PyAny>) -> PyResult<()> {
-        if let Ok(value) = value.extract::<f64>() {
-            self.columns[column] = Place::All(value);
+        if value.is_instance_of::<PyFloat>() || value.is_instance_of::<PyInt>() {
+            self.columns[column] = Place::All(value.extract().map_err(|_| refused(format!("{name}: {value} is too large")))?);
             return Ok(());
         }
-        let array = contiguous(name, value, "f8")?;
+        let array = contiguous(name, value)?;
         match *array.shape() {
+            [] => {
+                self.columns[column] = Place::All(array.as_slice().map_err(raised)?[0]);
+                Ok(())
+            }
             [rays] if Some(rays) == self.rays() => {
                 self.columns[column] = Place::Each { array: self.arrays.len(), step: 1, first: 0 };
                 self.arrays.push(array);
@@ -152,8 +216,9 @@ fn rows_of<'py>(rays: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f6
     if !rays.getattr("dtype")?.eq(&wanted)? {
         return Err(refused(format!("rays: of type {}, not of lodray.RAY", rays.getattr("dtype")?)));
     }
+    unmasked("rays", rays)?;
     let rays = rays.py().import("numpy")?.call_method1("ascontiguousarray", (rays,))?;
-    contiguous("rays", &rays.call_method1("view", ("f8",))?.call_method1("reshape", ((-1, RAY_COLUMNS),))?, "f8")
+    contiguous("rays", &rays.call_method1("view", ("f8",))?.call_method1("reshape", ((-1, RAY_COLUMNS),))?)
 }
 
 /// The type of rays in one array: a view of rows of twelve columns.

@@ -2,12 +2,25 @@
 
 use crate::arrays::rays;
 use crate::errors::{raised, refused};
-use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, Query, View};
+use crate::told::{FEW, Told, at_once, beside};
+use lodray::mesh::Placement;
+use lodray::rays::{Camera, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, Query, RAY_COLUMNS, View};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 
-/// A pinhole camera on a scene: made by `Scene.camera`.
+/// A pinhole camera on a scene: made by `Scene.camera`. It does not change, and those with the same rays are equal. It can be pickled.
 #[pyclass(name = "Camera", frozen, module = "lodray")]
-pub struct PyCamera(pub Camera);
+pub struct PyCamera {
+    camera: Camera,
+    /// What it was made of.
+    view: View,
+    space: ModelSpace,
+}
+
+/// The same in numbers of Python: size, eye, direction, target, up, distance and view angle, and of the model's space offset, scale, and corners.
+type State =
+    ([u32; 2], Option<[f64; 3]>, Option<[f64; 3]>, Option<[f64; 3]>, Option<[f64; 3]>, Option<f64>, f64, [f64; 3], f64, [i32; 3], [i32; 3]);
 
 /// Where a camera is, as the program's options have it.
 pub struct Place {
@@ -36,9 +49,23 @@ pub fn camera(space: &ModelSpace, size: [u32; 2], place: &Place) -> PyResult<PyC
         (Some(_), ..) => return Err(refused("eye: goes with neither yaw nor pitch")),
         (None, yaw, pitch) => view.around(yaw.unwrap_or(0.0), pitch.unwrap_or(0.0)),
     };
-    let [width, height] = size;
-    // The program's words for what it calls by options.
-    Camera::new(&view, space, width, height).map(PyCamera).map_err(|error| refused(error.to_string().replace("--", "")))
+    PyCamera::new(view, *space, size)
+}
+
+impl PyCamera {
+    fn new(view: View, space: ModelSpace, [width, height]: [u32; 2]) -> PyResult<Self> {
+        let camera = Camera::new(&view, &space, width, height).map_err(raised)?;
+        Ok(Self { camera, view, space })
+    }
+}
+
+/// The camera that was pickled as this.
+#[pyfunction]
+pub fn _camera(state: State) -> PyResult<PyCamera> {
+    let (size, eye, direction, target, up, distance, fov, offset, scale, lo, hi) = state;
+    // How many zero bits rays have is nothing to a camera.
+    let space = ModelSpace { placement: Placement { offset, scale }, lo, hi, zeros: [0; 2] };
+    PyCamera::new(View { eye, direction, target, up, distance, fov }, space, size)
 }
 
 #[pymethods]
@@ -46,67 +73,103 @@ impl PyCamera {
     /// The eye in world space: (x, y, z).
     #[getter]
     fn eye(&self) -> [f64; 3] {
-        self.0.eye.to_array()
+        self.camera.eye.to_array()
     }
 
     /// The point it looks at: (x, y, z).
     #[getter]
     fn target(&self) -> [f64; 3] {
-        self.0.target.to_array()
+        self.camera.target.to_array()
     }
 
     /// What is up: (x, y, z).
     #[getter]
     fn up(&self) -> [f64; 3] {
-        self.0.up.to_array()
+        self.camera.up.to_array()
     }
 
     /// Vertical view angle in degrees.
     #[getter]
     fn fov(&self) -> f64 {
-        self.0.fov
+        self.camera.fov
     }
 
     /// Columns and rows of pixels.
     #[getter]
     fn size(&self) -> (u32, u32) {
-        let [width, height] = self.0.pixels();
+        let [width, height] = self.camera.pixels();
         (width, height)
     }
 
     /// Distance from the target in bounding radii of the scene.
     #[getter]
     fn distance(&self) -> f64 {
-        self.0.radii
+        self.camera.radii
     }
 
     /// Tangent of the half angle of every pixel's cone.
     #[getter]
     fn cone(&self) -> f64 {
-        self.0.tan_theta
+        self.camera.tan_theta
     }
 
     /// The rays of its pixels: an array of lodray.RAY of shape (height, width), the first row at the top.
+    ///
+    /// `Scene.cast` of it has hits of shape (height * width,). A ray takes 96 bytes. Control-C stops it, and other threads run meanwhile.
     fn rays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let [width, height] = self.0.pixels();
-        let row = |(x, y)| {
-            let Query { origin: [a, b, c], direction: [u, v, w], radius, tan_theta, t_min, t_max, .. } = self.0.ray(x, y);
-            [a, b, c, u, v, w, radius, tan_theta, t_min, t_max, 0.0, -1.0]
+        let [width, height] = self.camera.pixels();
+        let count = width as usize * height as usize;
+        let work = |told: &Told| {
+            let mut all = vec![0.0; count * RAY_COLUMNS];
+            (0..height).into_par_iter().zip(all.par_chunks_mut(width as usize * RAY_COLUMNS)).for_each(|(y, row)| {
+                // Before the row: each thread has many parts left when the work is to stop.
+                told.step(1);
+                for (x, ray) in (0..width).zip(row.as_chunks_mut().0) {
+                    let Query { origin: [a, b, c], direction: [u, v, w], radius, tan_theta, t_min, t_max, .. } = self.camera.ray(x, y);
+                    *ray = [a, b, c, u, v, w, radius, tan_theta, t_min, t_max, 0.0, -1.0];
+                }
+            });
+            all
         };
-        let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(row).collect();
-        rays(py, rows)?.call_method1("reshape", (height, width))
+        let all = if (count as u64) < FEW { at_once(py, work) } else { beside(py, None, work)? };
+        rays(py, all)?.call_method1("reshape", (height, width))
+    }
+
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// Cameras are the same that have the same rays.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.camera == other.camera
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        let ([x, y, z], [u, v, w]) = (self.eye(), self.target());
+        (x, y, z, u, v, w, self.fov(), self.size()).into_bound_py_any(py)?.hash()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (State,))> {
+        let View { eye, direction, target, up, distance, fov } = self.view;
+        let ModelSpace { placement: Placement { offset, scale }, lo, hi, .. } = self.space;
+        let state = (self.camera.pixels(), eye, direction, target, up, distance, fov, offset, scale, lo, hi);
+        Ok((py.import("lodray._lodray")?.getattr("_camera")?, (state,)))
     }
 
     fn __repr__(&self) -> String {
-        let ([width, height], eye, target) = (self.0.pixels(), self.0.eye.to_array(), self.0.target.to_array());
-        format!("Camera(size=({width}, {height}), eye={eye:?}, target={target:?}, fov={})", self.0.fov)
+        let ([width, height], eye, target) = (self.camera.pixels(), self.camera.eye.to_array(), self.camera.target.to_array());
+        format!("Camera(size=({width}, {height}), eye={eye:?}, target={target:?}, fov={})", self.camera.fov)
     }
 }
 
 /// The camera that was given, or the program's usual one.
 pub fn given(camera: Option<&Bound<'_, PyCamera>>, space: &ModelSpace) -> PyResult<Camera> {
     match camera {
-        Some(camera) => Ok(camera.get().0),
+        Some(camera) => Ok(camera.get().camera),
         None => Camera::new(&View::default(), space, 1024, 1024).map_err(raised),
     }
 }

@@ -2,20 +2,22 @@
 
 use crate::errors::{raised, refused};
 use crate::machine::machines;
+use crate::method::MOST_SAMPLES;
 use crate::told::beside;
-use crate::values::{document as to_document, named, option};
+use crate::values::{document as to_document, named, option, within};
 use lodray::format::Scene;
 use lodray::machine::Machine;
-use lodray::method::find;
+use lodray::method::{METHODS, find};
+use lodray::rays::MAX_SIDE;
 use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute};
 use lodray::scene::{MethodError, Target};
 use lodray::study::{
     Cache, Chosen, ErrorTimePlan, JobLines, Jobs, Means, Measure, Measured, Origin, SceneJobs, StudyError, ViewJob, document,
-    error_time as measure,
+    error_time as measure, one_line,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -31,20 +33,40 @@ pub struct Study<'a, 'py> {
     pub methods: Vec<String>,
     pub compute: &'a str,
     pub values: Option<&'a Bound<'py, PyDict>>,
-    pub samples: u32,
-    pub error_size: u32,
-    pub most_samples: u32,
+    pub samples: i128,
+    pub error_size: i128,
+    pub most_samples: i128,
     pub out: Option<PathBuf>,
 }
 
 /// Samples along a side of a pixel, of so many in all.
-fn side(of: &str, samples: u32, least: u32) -> PyResult<u32> {
+fn side(of: &str, samples: i128, least: u32) -> PyResult<u32> {
+    let samples = within(of, samples, least..=MOST_SAMPLES)?;
     let side = samples.isqrt();
-    if side * side == samples && (least..=256).contains(&side) {
-        Ok(side)
-    } else {
-        Err(refused(format!("{of}: {samples} is no square from {least} to 65536")))
+    if side * side == samples { Ok(side) } else { Err(refused(format!("{of}: {samples} is no square"))) }
+}
+
+/// The values of error knobs, checked.
+fn values(given: Option<&Bound<'_, PyDict>>) -> PyResult<BTreeMap<String, Vec<String>>> {
+    let knobs: BTreeMap<_, _> = METHODS.iter().filter_map(|method| method.error).map(|error| (error.knob.name, error.knob)).collect();
+    let mut all = BTreeMap::new();
+    for (name, of) in given.into_iter().flatten() {
+        let name = name.extract::<String>().map_err(|_| refused(format!("values: {name} is no name of a knob")))?.replace('_', "-");
+        let knob = knobs.get(name.as_str()).ok_or_else(|| {
+            let names = knobs.keys().map(|name| name.replace('-', "_")).collect::<Vec<_>>().join(", ");
+            refused(format!("values: no method trades error by '{name}'; there are: {names}"))
+        })?;
+        // A text would be taken letter by letter.
+        let list = if of.is_instance_of::<PyString>() { None } else { of.try_iter().ok() };
+        let list = list.ok_or_else(|| refused(format!("values: {name} has {of}, and no list of values")))?;
+        let list = list.map(|value| option(&value?)).collect::<PyResult<Vec<_>>>()?;
+        if list.is_empty() {
+            return Err(refused(format!("values: {name} has none")));
+        }
+        list.iter().try_for_each(|value| knob.check(value)).map_err(|error| refused(format!("values: {}", one_line(&error))))?;
+        all.insert(name, list);
     }
+    Ok(all)
 }
 
 impl Study<'_, '_> {
@@ -62,8 +84,16 @@ impl Study<'_, '_> {
             if method.name == "reference" {
                 return Err(refused("methods: reference is what the others are compared with"));
             }
+            if method.of_input() && scene.input().is_none() {
+                return Err(refused(format!("methods: {name} is over the mesh, which the scene has only with keep_mesh")));
+            }
             Ok(Chosen::plain(method))
         };
+        for (of, count) in [("methods", self.methods.len()), ("distances", self.distances.len())] {
+            if count == 0 {
+                return Err(refused(format!("{of}: there is none")));
+            }
+        }
         let methods = self.methods.iter().map(method).collect::<PyResult<Vec<_>>>()?;
         let name = if scene.meta().name.is_empty() { "scene" } else { &scene.meta().name };
         let views: Vec<_> = self.distances.iter().map(|&distance| ViewJob::at(self.size, distance)).collect();
@@ -71,16 +101,11 @@ impl Study<'_, '_> {
         views.iter().try_for_each(|view| view.camera(&space).map(drop)).map_err(raised)?;
         let origin = Origin::File(PathBuf::from(format!("{name}.lod")));
         let jobs = SceneJobs { content: xxh3_64(scene.bytes()), views, ..SceneJobs::new(name, origin) };
-        let mut values = BTreeMap::new();
-        for (knob, of) in self.values.iter().flat_map(|values| values.iter()) {
-            let of = of.try_iter()?.map(|value| option(&value?)).collect::<PyResult<Vec<_>>>()?;
-            values.insert(knob.extract::<String>()?.replace('_', "-"), of);
-        }
         let most = side("most_samples", self.most_samples, 0)?;
         let plan = ErrorTimePlan {
-            values,
+            values: values(self.values)?,
             sides: vec![side("samples", self.samples, 1)?],
-            measure: Measure { host_rays: 0, ..Measure::of(self.error_size.max(1), most) },
+            measure: Measure { host_rays: 0, ..Measure::of(within("error_size", self.error_size, 1..=MAX_SIDE)?, most) },
             ..ErrorTimePlan::new(Jobs::new(vec![jobs], methods, targets))
         };
         plan.check().map_err(raised)?;

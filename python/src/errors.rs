@@ -15,12 +15,22 @@ create_exception!(
 
 /// An error of the library as an exception.
 pub fn raised(error: impl Error) -> PyErr {
-    refused(one_line(&error))
+    raised_by(&error)
 }
 
 /// The same of an error behind a box.
 pub fn raised_by(error: &dyn Error) -> PyErr {
-    refused(one_line(error))
+    refused(of_arguments(&one_line(error)))
+}
+
+/// The program's words with the names of arguments in place of those of options: `--max-error` is max_error.
+pub fn of_arguments(words: &str) -> String {
+    let word = |word: &str| {
+        let option = word.trim_start_matches('(');
+        let before = &word[..word.len() - option.len()];
+        option.strip_prefix("--").map_or_else(|| word.to_owned(), |name| format!("{before}{}", name.replace('-', "_")))
+    };
+    words.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// What cannot be, in words.

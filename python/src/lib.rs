@@ -25,7 +25,7 @@ fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     let methods = METHODS.iter().map(|method| {
         let knobs = method.knobs.iter().map(|knob| {
             let values: Vec<_> = knob.words.iter().map(|(word, _)| word).collect();
-            json!({ "name": knob.name.replace('-', "_"), "help": knob.help, "default": knob.default, "values": values })
+            json!({ "name": knob.name.replace('-', "_"), "help": errors::of_arguments(knob.help), "default": knob.default, "values": values })
         });
         json!({ "name": method.name, "help": method.help, "knobs": knobs.collect::<Vec<_>>() })
     });
@@ -47,5 +47,8 @@ fn _lodray(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<machine::PyMachinePart>()?;
     module.add_function(wrap_pyfunction!(methods, module)?)?;
     module.add_function(wrap_pyfunction!(machine::machines_shipped, module)?)?;
+    // What pickles are read by: none of them is exported.
+    module.setattr("_machine", wrap_pyfunction!(machine::_machine, module)?)?;
+    module.setattr("_camera", wrap_pyfunction!(camera::_camera, module)?)?;
     module.add_function(wrap_pyfunction!(paths::paths, module)?)
 }

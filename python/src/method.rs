@@ -5,6 +5,7 @@ use crate::camera::{PyCamera, given};
 use crate::errors::{raised, refused};
 use crate::simulate::{Frame, simulate};
 use crate::told::{FEW, Told, at_once, beside};
+use crate::values::{named, whole, within};
 use lodray::method::Crossings;
 use lodray::picture::{Shader, Shading};
 use lodray::rays::{ModelSpace, RayFile, RayRows, RaySource, Sight};
@@ -25,6 +26,9 @@ type Words = Box<dyn Error + Send + Sync>;
 /// A way to find hits in a scene, with all that it needs: made by `Scene.method`, to be used as often as wanted and by any thread.
 #[pyclass(name = "SceneMethod", frozen, module = "lodray")]
 pub struct PySceneMethod(pub Arc<SceneMethod>);
+
+/// Most samples of a pixel: 256 along its side.
+pub const MOST_SAMPLES: u32 = 1 << 16;
 
 /// What a picture can be of.
 const PICTURES: [&str; 2] = ["image", "hits"];
@@ -209,14 +213,15 @@ impl PySceneMethod {
         py: Python<'py>,
         camera: Option<&Bound<'py, PyCamera>>,
         what: &str,
-        samples: u32,
+        #[pyo3(from_py_with = whole)] samples: i128,
         shading: &str,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let samples: u32 = within("samples", samples, 1..=MOST_SAMPLES)?;
         if !PICTURES.contains(&what) {
             return Err(refused(format!("what: '{what}' is none of {}", PICTURES.join(", "))));
         }
-        let shading: Shading = crate::values::named("shading", shading)?;
+        let shading: Shading = named("shading", shading)?;
         let (method, scene) = (&*self.0, self.0.traced());
         let (space, delta) = (ModelSpace::of(scene), method.knobs().delta());
         let camera = given(camera, &space)?;
@@ -224,6 +229,9 @@ impl PySceneMethod {
         check_normals(scene, "a picture").map_err(raised)?;
         let [width, height] = camera.pixels().map(|n| n as usize);
         if what == "hits" {
+            if samples != 1 {
+                return Err(refused("samples: of a pixel of an image; hits are of one ray for each pixel"));
+            }
             let packed = beside(py, progress, |told| {
                 told.say("tracing", 0, Some(camera.batches() as u64));
                 let sight = Sight::new(&camera, &space, delta);
@@ -254,12 +262,12 @@ impl PySceneMethod {
         camera: Option<&Bound<'py, PyCamera>>,
         rays: Option<&Bound<'py, PyAny>>,
         compute: &str,
-        frames: u32,
+        #[pyo3(from_py_with = whole)] frames: i128,
         turn: f64,
-        tiles_in_turn: u32,
+        #[pyo3(from_py_with = whole)] tiles_in_turn: i128,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        simulate(&self.0, machine, &Frame { camera, rays, frames, turn, tiles_in_turn }, compute, progress)
+        simulate(&self.0, machine, &Frame::new(camera, rays, frames, turn, tiles_in_turn)?, compute, progress)
     }
 
     fn __repr__(&self) -> String {

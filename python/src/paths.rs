@@ -4,7 +4,7 @@ use crate::arrays::shaped;
 use crate::errors::{raised, raised_by, refused};
 use crate::scene::PyScene;
 use crate::told::{Told, beside};
-use crate::values::{document, from_python, to_python};
+use crate::values::{Size, document, from_python, to_python, whole_or_none, within};
 use lodray::format::Scene;
 use lodray::mesh::{RemeshOptions, read};
 use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, SceneFile, Starts, World};
@@ -60,7 +60,9 @@ fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
 ///
 /// description: the path of a description of models, materials, lights and cameras (TOML; docs/paths.md has the keys), or the same as a dictionary.
 /// models: scenes in place of its models' files, one for each, in its order. camera: by its name; the first if None.
-/// size, samples, depth, seed: in place of the description's. time: where models stand that move, from 0 to 1. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above.
+/// size, samples, depth, seed: in place of the description's: (width, height) in pixels, 1 to 2^20 paths for each pixel, 0 to 64 bounces, 0 to 2^64 - 1.
+/// time: where models stand that move, from 0 to 1. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above, 0 or more; "exact" if None.
+/// method, knobs, progress: as for `Scene.cast`.
 ///
 /// Raises LodrayError: the description cannot be, with file and key; a model that cannot be read; a method whose surface rays cannot leave.
 #[pyfunction]
@@ -70,10 +72,10 @@ pub fn paths<'py>(
     description: &Bound<'py, PyAny>,
     models: Option<Vec<Bound<'py, PyScene>>>,
     camera: Option<&str>,
-    size: Option<(u32, u32)>,
-    samples: Option<u32>,
-    depth: Option<u32>,
-    seed: Option<u64>,
+    size: Option<Size>,
+    #[pyo3(from_py_with = whole_or_none)] samples: Option<i128>,
+    #[pyo3(from_py_with = whole_or_none)] depth: Option<i128>,
+    #[pyo3(from_py_with = whole_or_none)] seed: Option<i128>,
     time: f64,
     starts: Option<&Bound<'py, PyAny>>,
     method: &str,
@@ -87,14 +89,18 @@ pub fn paths<'py>(
     }
     file.time = time;
     let starts = starts.map_or(Ok(Starts::Exact), self::starts)?;
-    if let Some((width, height)) = size {
+    if let Some(Size([width, height])) = size {
         (file.picture.width, file.picture.height) = (width, height);
     }
-    file.picture.samples = samples.unwrap_or(file.picture.samples);
-    file.picture.depth = depth.unwrap_or(file.picture.depth);
-    file.picture.seed = seed.unwrap_or(file.picture.seed);
-    if !(1..=MOST_SAMPLES).contains(&file.picture.samples) || file.picture.depth > MOST_DEPTH {
-        return Err(refused(format!("samples, depth: 1 to {MOST_SAMPLES} samples, at most {MOST_DEPTH} bounces")));
+    // What the description says was checked when it was read.
+    if let Some(samples) = samples {
+        file.picture.samples = within("samples", samples, 1..=MOST_SAMPLES)?;
+    }
+    if let Some(depth) = depth {
+        file.picture.depth = within("depth", depth, 0..=MOST_DEPTH)?;
+    }
+    if let Some(seed) = seed {
+        file.picture.seed = within("seed", seed, 0..=u64::MAX)?;
     }
     let given: Option<Vec<Scene>> = models.map(|models| models.iter().map(|scene| scene.get().0.clone()).collect());
     if let Some(given) = given.as_ref().filter(|given| given.len() != file.model.len()) {

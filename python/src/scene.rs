@@ -7,11 +7,12 @@ use crate::errors::{raised, refused};
 use crate::method::PySceneMethod;
 use crate::plan::plan;
 use crate::told::{Told, beside};
-use crate::values::{document, named, to_python};
+use crate::values::{Size, document, named, to_python, triple, whole, whole_or_none, within};
 use lodray::format::audit::audit;
 use lodray::format::{Scene, export_level, write_and_rename};
-use lodray::mesh::procedural::Options;
+use lodray::mesh::procedural::{MAX_TREES, MAX_WALLS, Options};
 use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh, read};
+use lodray::num::MAX_LEVELS;
 use lodray::rays::ModelSpace;
 use lodray::scene::BuildOptions;
 use pyo3::prelude::*;
@@ -32,8 +33,8 @@ type Mesh = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// Vertices and faces of NumPy's as the library takes them.
 fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Mesh> {
-    let vertices = contiguous("vertices", vertices, "f8")?;
-    let faces = whole("faces", faces)?;
+    let vertices = contiguous("vertices", vertices)?;
+    let faces = contiguous("faces", faces)?;
     let small = |face: &[i64; 3]| -> Option<[u32; 3]> {
         let [a, b, c] = face.map(|v| u32::try_from(v).ok());
         Some([a?, b?, c?])
@@ -42,16 +43,6 @@ fn mesh_of(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Me
     let checked =
         each.map(|(k, face)| small(face).ok_or_else(|| refused(format!("faces: face {k} is {face:?}, and indices are from 0 on"))));
     Ok((triples::<f64>("vertices", &vertices)?.to_vec(), checked.collect::<PyResult<_>>()?))
-}
-
-/// An array of whole numbers.
-fn whole<'py>(of: &str, array: &Bound<'py, PyAny>) -> PyResult<numpy::PyReadonlyArrayDyn<'py, i64>> {
-    let array = array.py().import("numpy")?.call_method1("asarray", (array,))?;
-    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
-    if kind != "i" && kind != "u" {
-        return Err(refused(format!("{of}: of type {}, not of whole numbers", array.getattr("dtype")?)));
-    }
-    contiguous(of, &array, "i8")
 }
 
 impl PyScene {
@@ -70,6 +61,9 @@ impl PyScene {
 impl PyScene {
     /// Opens a scene file, as `lodray build` and `Scene.save` write them. It is checked, and mapped rather than read.
     ///
+    /// So nothing may change the file in place while the scene is in use: hits would be wrong, and where it was cut short the process ends.
+    /// `Scene.save` under the same name does no harm: it puts another file in its place.
+    ///
     /// Raises LodrayError: there is no such file, or it is damaged.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
@@ -78,13 +72,17 @@ impl PyScene {
 
     /// A scene of a mesh, with levels of detail.
     ///
+    /// The mesh is made anew, so that rays meet triangles of the scene, which lie within max_error of its own. `Scene.exact` keeps those.
+    ///
     /// mesh: vertices, an array of shape (n, 3), with faces, whole numbers of shape (m, 3); or the path of an OBJ, PLY, glTF, GLB or STL file.
-    /// max_error: largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box.
+    /// max_error: largest distance between mesh and result, both ways, in percent of the diagonal of the mesh's box: above 0, at most 100; 0.3 if None.
     /// levels: 1-to-4 splits, 0 to 10; as many as the mesh's triangles ask for if None.
-    /// base: a base mesh of so many triangles, whatever is lost.
-    /// crease_angle: edges that bend by more degrees stay sharp.
-    /// own_triangles: the mesh's triangles as base triangles that are not split; triangles without area and repeated ones are left out.
-    /// bounds, vertex_form: what displacement bounds cover (largest, total), and how inserted vertices are stored (compact, short, exact).
+    /// base: a base mesh of so many triangles, 1 or more, whatever is lost; as few as keep within max_error if None.
+    /// crease_angle: edges that bend by more degrees stay sharp, 0 to 180; 50 if None.
+    /// own_triangles: the mesh's triangles as base triangles that are not split; triangles without area and repeated ones are left out. None of the four above goes with it.
+    /// bounds: what displacement bounds cover, "largest" or "total"; "total" if None.
+    /// vertex_form: how inserted vertices are stored, "compact", "short" or "exact"; "compact" if None, and "exact" with own_triangles.
+    /// name: what to call the scene; the file's name without ending if it is empty.
     /// keep_mesh: keeps the mesh too, for the methods over it (input-bvh and others).
     /// progress: called now and then as progress(what, done, of).
     ///
@@ -96,8 +94,8 @@ impl PyScene {
         mesh: &Bound<'_, PyAny>,
         faces: Option<&Bound<'_, PyAny>>,
         max_error: Option<f64>,
-        levels: Option<u32>,
-        base: Option<usize>,
+        #[pyo3(from_py_with = whole_or_none)] levels: Option<i128>,
+        #[pyo3(from_py_with = whole_or_none)] base: Option<i128>,
         crease_angle: Option<f64>,
         own_triangles: bool,
         bounds: Option<&str>,
@@ -111,6 +109,17 @@ impl PyScene {
             Some(faces) => Err(mesh_of(mesh, faces)?),
             None => Ok(mesh.extract::<PathBuf>().map_err(|_| refused("faces: missing; without them the mesh is the path of a file"))?),
         };
+        let of_remeshing = [
+            ("max_error", max_error.is_some()),
+            ("levels", levels.is_some()),
+            ("base", base.is_some()),
+            ("crease_angle", crease_angle.is_some()),
+        ];
+        if let Some((name, _)) = of_remeshing.into_iter().find(|(_, given)| own_triangles && *given) {
+            return Err(refused(format!("{name}: goes with no own_triangles, which are neither remeshed nor split")));
+        }
+        let levels = levels.map(|levels| within("levels", levels, 0..=MAX_LEVELS)).transpose()?;
+        let base_triangles = base.map(|base| within("base", base, 1..=usize::MAX)).transpose()?;
         let (max_error, crease_angle) = (max_error.unwrap_or(DEFAULT_MAX_ERROR), crease_angle.unwrap_or(DEFAULT_CREASE_ANGLE));
         if !(max_error > 0.0 && max_error <= 100.0) {
             return Err(refused(format!("max_error: {max_error} is not above 0 and at most 100 percent")));
@@ -123,7 +132,7 @@ impl PyScene {
         let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let options = BuildOptions {
             name: if name.is_empty() { stem } else { name.to_owned() },
-            remesh: (!own_triangles).then_some(RemeshOptions { levels, base_triangles: base, max_error, reserve: 0.0, crease_angle }),
+            remesh: (!own_triangles).then_some(RemeshOptions { levels, base_triangles, max_error, reserve: 0.0, crease_angle }),
             bounds: bounds.map_or(Ok(usual.bounds), |bounds| named("bounds", bounds))?,
             vertices: vertex_form.map_or(Ok(usual.vertices), |form| named("vertex_form", form))?,
             ..usual
@@ -146,7 +155,9 @@ impl PyScene {
     /// The scene of these very triangles, for exact rays: (scene, faces).
     ///
     /// vertices: an array of shape (n, 3); faces: whole numbers of shape (m, 3). None is split or left out, but those that have two
-    /// corners at one place, which no ray meets. faces[hits["triangle"]] are the faces that hits are on, of shape (number of hits,).
+    /// corners at one place, which no ray meets.
+    /// The result's faces, int64 of shape (number of triangles,), are the numbers of the given ones. A ray that meets nothing has triangle -1,
+    /// which would be the last: take faces[hits["triangle"][hits["tree"] >= 0]], the faces of the rays that met any.
     /// Vertices are within half a step of their places, of which the largest side of the mesh's box has 2^28.
     ///
     /// Raises LodrayError: an index out of range, a coordinate that is not finite, or no triangle.
@@ -161,8 +172,8 @@ impl PyScene {
 
     /// A procedural scene: terrain, cloth, sphere, spikes, room, wall, street, pot or drape.
     ///
-    /// levels: 1-to-4 splits, 0 to 10; base: base triangles, rounded to what is possible; roughness: between 0 and 1;
-    /// walls: of a room, quads along each wall; width: of a terrain, world units across. What is None has the scene's own value.
+    /// levels: 1-to-4 splits, 0 to 10. base: base triangles, 1 to 2^27, rounded up to what is possible. seed: 0 to 2^64 - 1. roughness: above 0 and below 1.
+    /// walls: of a room, quads along each wall, 1 to 1024. width: of a terrain, world units across, 0.5 to 1024. What is None has the scene's own value.
     ///
     /// Raises LodrayError: there is no such scene, or a value is out of its range.
     #[staticmethod]
@@ -171,14 +182,22 @@ impl PyScene {
     fn generate(
         py: Python<'_>,
         scene: &str,
-        levels: Option<u32>,
-        base: Option<u32>,
-        seed: u64,
+        #[pyo3(from_py_with = whole_or_none)] levels: Option<i128>,
+        #[pyo3(from_py_with = whole_or_none)] base: Option<i128>,
+        #[pyo3(from_py_with = whole)] seed: i128,
         roughness: Option<f64>,
-        walls: Option<u32>,
+        #[pyo3(from_py_with = whole_or_none)] walls: Option<i128>,
         width: Option<f64>,
     ) -> PyResult<Self> {
-        let options = Options { scene: named("scene", scene)?, levels, base, seed, roughness, walls, width };
+        let options = Options {
+            scene: named("scene", scene)?,
+            levels: levels.map(|levels| within("levels", levels, 0..=MAX_LEVELS)).transpose()?,
+            base: base.map(|base| within("base", base, 1..=MAX_TREES as u32)).transpose()?,
+            seed: within("seed", seed, 0..=u64::MAX)?,
+            roughness,
+            walls: walls.map(|walls| within("walls", walls, 1..=MAX_WALLS)).transpose()?,
+            width,
+        };
         Ok(Self(beside(py, None, |_| Scene::generate(&options))?.map_err(raised)?))
     }
 
@@ -220,12 +239,18 @@ impl PyScene {
         beside(py, None, |_| self.0.save(&path))?.map_err(raised)
     }
 
-    /// Writes a level as OBJ, the finest if None: a dictionary of how many vertices and faces there are.
+    /// Writes a level as OBJ, 0 to the finest, which it is if None: a dictionary of level, and of how many vertices and faces there are.
     ///
     /// Raises LodrayError: there is no such level, or it cannot be written.
     #[pyo3(signature = (path, level=None))]
-    fn export<'py>(&self, py: Python<'py>, path: PathBuf, level: Option<u32>) -> PyResult<Bound<'py, PyAny>> {
-        let level = level.unwrap_or(self.0.levels());
+    fn export<'py>(
+        &self,
+        py: Python<'py>,
+        path: PathBuf,
+        #[pyo3(from_py_with = whole_or_none)] level: Option<i128>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let finest = self.0.levels();
+        let level = level.map_or(Ok(finest), |level| within("level", level, 0..=finest))?;
         let counts = beside(py, None, |_| {
             let mut counts = None;
             let written = write_and_rename(&path, |out| {
@@ -248,11 +273,15 @@ impl PyScene {
     /// What every ray meets first: an array of lodray.HIT of shape (n,).
     ///
     /// rays, directions: origins in world units and directions of any length but 0, arrays of shape (n, 3), or one of them of shape (3,) for all;
-    /// or one array in place of both: of type lodray.RAY, or of rows of 6, 8, 10, 11 or 12 numbers as files of rays have them.
+    /// or one array in place of both: of type lodray.RAY, or of rows of 6, 8, 10, 11 or 12 numbers as files of rays have them. `help(lodray)` has the fields
+    /// of lodray.RAY and lodray.HIT. An array of lodray.RAY may have any shape, as that of `Camera.rays`; its hits are flat, row after row.
     /// Contiguous arrays of float64 are not copied. Other threads of Python run meanwhile; they must not change the arrays.
-    /// radius, cone: of each ray's cone, the radius at its origin and the tangent of its half angle: what lod may leave out. 0 is full detail.
-    /// t_min, t_max: distances from the origin that count, in world units. Each is a number or an array of shape (n,).
+    /// Arrays are of whole or floating numbers; dates, texts, bools and complex numbers are refused, and so are masked entries.
+    /// radius, cone: of each ray's cone, the radius at its origin in world units and the tangent of its half angle, 0 or more: what lod may leave out. 0 is full detail.
+    /// t_min, t_max: distances from the origin that count, in world units, 0 <= t_min <= t_max; 0 and inf if None.
+    /// Each of these four is a number or an array of shape (n,). Ends are as rounded: what lies at one to within the rounding of the ray may count or not.
     /// follow: a ray that names an earlier one starts exactly at that one's hit.
+    /// progress: called as progress(what, done, of), twenty times a second at most; what it raises ends the work.
     /// knobs: those of the method, such as delta=0.5. `Scene.method` keeps what a method needs, so that it is made but once.
     ///
     /// A ray that meets nothing has t = inf, and -1 or no number elsewhere.
@@ -337,32 +366,38 @@ impl PyScene {
 
     /// A camera on the scene.
     ///
-    /// size: (width, height) in pixels, (1024, 1024) by default. distance: from the target in bounding radii; if None the picture just holds the whole scene.
-    /// eye, target, up: (x, y, z) in world units; the target is the scene's centre if None. With a distance, eye is only a direction.
-    /// yaw, pitch: degrees around the up axis and above, in place of an eye. fov: vertical view angle in degrees.
+    /// size: (width, height) in pixels, each from 1 to 65536, and at most 2^26 pixels; (1024, 1024) by default.
+    /// distance: from the target in bounding radii, above 0; if None the picture just holds the whole scene.
+    /// eye, target, up: (x, y, z) in world units; if None the target is the scene's centre, up (0, 1, 0), and the eye in direction (0.35, 0.5, 1) from the target. With a distance, eye is only a direction.
+    /// yaw, pitch: degrees around the up axis and above, in place of an eye; 0 for one that is None if the other is not.
+    /// fov: vertical view angle in degrees, above 0 and below 180; 37.85 if None, the paper's camera.
     ///
     /// Raises LodrayError: a value that leaves no view.
-    #[pyo3(signature = (*, size=(1024, 1024), distance=None, eye=None, target=None, up=None, yaw=None, pitch=None, fov=None))]
+    #[pyo3(signature = (*, size=Size([1024, 1024]), distance=None, eye=None, target=None, up=None, yaw=None, pitch=None, fov=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn camera(
         &self,
-        size: (u32, u32),
+        size: Size,
         distance: Option<f64>,
-        eye: Option<[f64; 3]>,
-        target: Option<[f64; 3]>,
-        up: Option<[f64; 3]>,
+        eye: Option<Vec<f64>>,
+        target: Option<Vec<f64>>,
+        up: Option<Vec<f64>>,
         yaw: Option<f64>,
         pitch: Option<f64>,
         fov: Option<f64>,
     ) -> PyResult<PyCamera> {
-        camera(&ModelSpace::of(&self.0), [size.0, size.1], &Place { distance, eye, target, up, yaw, pitch, fov })
+        let (eye, target, up) = (triple("eye", eye)?, triple("target", target)?, triple("up", up)?);
+        camera(&ModelSpace::of(&self.0), size.0, &Place { distance, eye, target, up, yaw, pitch, fov })
     }
 
     /// A picture of a camera's view, or what its rays met.
     ///
     /// what: "image", an array of uint8 of shape (height, width, 3), sRGB; "hits", an array of lodray.HIT of shape (height, width), whose fields
-    /// are distance (t), level, normal and more, pixel by pixel. samples: of a pixel of the image, a square. shading: full, level, weighted or facets.
-    /// Without a camera the picture just holds the whole scene.
+    /// are distance (t), level, normal and more, pixel by pixel. samples: of a pixel of an image, a square from 1 to 65536; hits have one ray for each pixel.
+    /// shading: of an image, "full", "level", "weighted" or "facets". method, knobs: as for `cast`.
+    /// Without a camera the picture just holds the whole scene, in 1024 x 1024 pixels.
+    ///
+    /// Raises LodrayError: an argument that is none of these, too many samples in all, or a camera from where the scene cannot be seen.
     #[pyo3(signature = (camera=None, *, what="image", samples=1, shading="facets", method="lod", progress=None, **knobs))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn render<'py>(
@@ -370,7 +405,7 @@ impl PyScene {
         py: Python<'py>,
         camera: Option<&Bound<'py, PyCamera>>,
         what: &str,
-        samples: u32,
+        #[pyo3(from_py_with = whole)] samples: i128,
         shading: &str,
         method: &str,
         progress: Option<&Bound<'py, PyAny>>,
@@ -383,7 +418,8 @@ impl PyScene {
     ///
     /// machine: a Machine, the name of one, the path of a description or a dictionary; of a list of them the result is a list, of rays that
     /// were traced once. rays: an array as for `cast`, in place of a camera's. compute: "free", or "units" for traversal units that take time.
-    /// frames, turn: so many frames after one another, the camera turned by so many degrees from one to the next.
+    /// frames, turn: so many frames after one another, 1 to 10000, the camera turned by so many degrees from one to the next, -360 to 360.
+    /// Without camera and rays the camera just holds the whole scene, in 1024 x 1024 pixels.
     /// tiles_in_turn: rays of so many tiles that lie far apart in turn, a power of two up to 64, in place of tile by tile.
     ///
     /// Raises LodrayError: a machine that cannot be, or on which the frame does not end.
@@ -396,9 +432,9 @@ impl PyScene {
         rays: Option<&Bound<'py, PyAny>>,
         method: &str,
         compute: &str,
-        frames: u32,
+        #[pyo3(from_py_with = whole)] frames: i128,
         turn: f64,
-        tiles_in_turn: u32,
+        #[pyo3(from_py_with = whole)] tiles_in_turn: i128,
         progress: Option<&Bound<'py, PyAny>>,
         knobs: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -407,31 +443,33 @@ impl PyScene {
 
     /// What an error costs, for every method: the document that `lodray error-time` writes, as a dictionary.
     ///
-    /// distances: of the eye in bounding radii. size: of the frame whose costs are simulated, (1920, 1080) pixels by default. methods: names, lod and bvh by default. machine: as for
-    /// `simulate`. compute: "free" or "units". values: of each knob by which methods trade error, such as {"delta": [0.5, 1, 2]}, in place of their own.
-    /// samples: of a pixel, a square. error_size: most columns and rows that errors are measured with. most_samples: of a pixel of the
-    /// picture that stands for what should be seen, a square; 0 for none. out: a folder for pictures and for views that are done, with which
+    /// distances: of the eye in bounding radii, one or more. size: of the frame whose costs are simulated, (1920, 1080) pixels by default. methods: names, one or more, lod
+    /// and bvh by default; those over the mesh need keep_mesh. machine: as for `simulate`, "haydel2023" if None. compute: "free" or "units".
+    /// values: a list for each knob by which methods trade error, such as {"delta": [0.5, 1, 2]}, in place of their own.
+    /// samples: of a pixel, a square from 1 to 65536. error_size: most columns and rows that errors are measured with, 1 to 65536. most_samples: of a pixel of the
+    /// picture that stands for what should be seen, a square up to 65536; 0 for none. out: a folder for pictures and for views that are done, with which
     /// a run that is started again goes on; one that is removed if None.
     ///
     /// `lodray.table` makes rows of the document for pandas and polars.
-    #[pyo3(signature = (distances, *, size=(1920, 1080), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
+    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run.
+    #[pyo3(signature = (distances, *, size=Size([1920, 1080]), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn error_time<'py>(
         &self,
         py: Python<'py>,
         distances: Vec<f64>,
-        size: (u32, u32),
+        size: Size,
         methods: Vec<String>,
         machine: Option<&Bound<'py, PyAny>>,
         compute: &str,
         values: Option<&Bound<'py, PyDict>>,
-        samples: u32,
-        error_size: u32,
-        most_samples: u32,
+        #[pyo3(from_py_with = whole)] samples: i128,
+        #[pyo3(from_py_with = whole)] error_size: i128,
+        #[pyo3(from_py_with = whole)] most_samples: i128,
         out: Option<PathBuf>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let study = Study { distances, size: [size.0, size.1], methods, compute, values, samples, error_size, most_samples, out };
+        let study = Study { distances, size: size.0, methods, compute, values, samples, error_size, most_samples, out };
         error_time(py, &self.0, study, machine, progress)
     }
 
@@ -439,17 +477,19 @@ impl PyScene {
     /// and the gates of the unit and of the full one.
     ///
     /// distances: the unit is for views from these distances in bounding radii only, of this size, (1024, 1024)
-    /// pixels by default, and quality; for any rays without them.
-    #[pyo3(signature = (distances=vec![], *, size=(1024, 1024), delta=1.0, progress=None))]
+    /// pixels by default, and quality delta, 0 or more; for any rays without them.
+    ///
+    /// Raises LodrayError: a distance that is not above 0, a scene that was pruned for a job.
+    #[pyo3(signature = (distances=vec![], *, size=Size([1024, 1024]), delta=1.0, progress=None))]
     fn plan<'py>(
         &self,
         py: Python<'py>,
         distances: Vec<f64>,
-        size: (u32, u32),
+        size: Size,
         delta: f64,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        plan(py, &self.0, &distances, [size.0, size.1], delta, progress)
+        plan(py, &self.0, &distances, size.0, delta, progress)
     }
 
     fn __repr__(&self) -> String {

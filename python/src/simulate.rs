@@ -5,7 +5,7 @@ use crate::camera::{PyCamera, given};
 use crate::errors::{raised, refused};
 use crate::machine::machines;
 use crate::told::beside;
-use crate::values::{document, named};
+use crate::values::{document, named, within};
 use lodray::method::packet::takes_packets;
 use lodray::rays::{MOST_IN_TURN, ModelSpace, RayFile, may_be_in_turn};
 use lodray::run::{self, Compute};
@@ -19,18 +19,35 @@ use std::path::PathBuf;
 /// The rays of a frame, or of several.
 pub struct Frame<'a, 'py> {
     /// Those of a camera.
-    pub camera: Option<&'a Bound<'py, PyCamera>>,
+    camera: Option<&'a Bound<'py, PyCamera>>,
     /// Or of an array.
-    pub rays: Option<&'a Bound<'py, PyAny>>,
+    rays: Option<&'a Bound<'py, PyAny>>,
     /// Frames after one another.
-    pub frames: u32,
+    frames: u32,
     /// Degrees between them.
-    pub turn: f64,
+    turn: f64,
     /// Tiles whose rays are handed out in turn.
-    pub tiles_in_turn: u32,
+    tiles_in_turn: u32,
 }
 
-impl Frame<'_, '_> {
+impl<'a, 'py> Frame<'a, 'py> {
+    /// A frame, checked.
+    pub fn new(
+        camera: Option<&'a Bound<'py, PyCamera>>,
+        rays: Option<&'a Bound<'py, PyAny>>,
+        frames: i128,
+        turn: f64,
+        tiles_in_turn: i128,
+    ) -> PyResult<Self> {
+        if !(-360.0..=360.0).contains(&turn) {
+            return Err(refused(format!("turn: {turn} is not from -360 to 360 degrees")));
+        }
+        let frames = within("frames", frames, 1..=10_000)?;
+        let in_turn = u32::try_from(tiles_in_turn).ok().filter(|&tiles| may_be_in_turn(tiles));
+        let in_turn = in_turn.ok_or_else(|| refused(format!("tiles_in_turn: {tiles_in_turn}; a power of two from 1 to {MOST_IN_TURN}")))?;
+        Ok(Self { camera, rays, frames, turn, tiles_in_turn: in_turn })
+    }
+
     fn rays(&self, method: &SceneMethod) -> PyResult<PassRays> {
         let (scene, delta) = (method.scene(), method.knobs().delta());
         if let Some(rays) = self.rays {
@@ -42,15 +59,6 @@ impl Frame<'_, '_> {
             return Ok(PassRays::File(rays, PathBuf::from("rays")));
         }
         let camera = given(self.camera, &ModelSpace::of(scene))?;
-        if !(1..=10_000).contains(&self.frames) || !(-360.0..=360.0).contains(&self.turn) {
-            return Err(refused(format!(
-                "frames, turn: {} and {}; 1 to 10000 frames, turned by -360 to 360 degrees",
-                self.frames, self.turn
-            )));
-        }
-        if !may_be_in_turn(self.tiles_in_turn) {
-            return Err(refused(format!("tiles_in_turn: {}; a power of two from 1 to {MOST_IN_TURN}", self.tiles_in_turn)));
-        }
         if self.tiles_in_turn > 1 && takes_packets(method.knobs()) {
             return Err(refused("tiles_in_turn: packets take the rays of one tile"));
         }

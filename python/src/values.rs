@@ -1,11 +1,15 @@
 //! Documents as the program writes them, as dictionaries and lists, and back.
 
 use crate::errors::{raised, refused};
+use lodray::rays::{MAX_PIXELS, MAX_SIDE};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 
 /// What the program would write as JSON, as Python has it.
 pub fn document<'py>(py: Python<'py>, of: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
@@ -88,4 +92,52 @@ pub fn option(value: &Bound<'_, PyAny>) -> PyResult<String> {
         return Ok(value.extract::<bool>()?.to_string());
     }
     Ok(value.str()?.to_string())
+}
+
+/// A whole number of any size, as arguments are taken whose range [`within`] checks, where their name is known. Beyond 128 bits it is the last number of 128.
+pub fn whole(of: &Bound<'_, PyAny>) -> PyResult<i128> {
+    match of.extract::<i128>() {
+        Err(error) if error.is_instance_of::<PyOverflowError>(of.py()) => Ok(if of.lt(0)? { i128::MIN } else { i128::MAX }),
+        number => number,
+    }
+}
+
+/// The same, or nothing.
+pub fn whole_or_none(of: &Bound<'_, PyAny>) -> PyResult<Option<i128>> {
+    if of.is_none() { Ok(None) } else { whole(of).map(Some) }
+}
+
+/// A whole number within a range; `of` names it in errors.
+pub fn within<T: TryFrom<i128> + PartialOrd + Display>(of: &str, number: i128, range: RangeInclusive<T>) -> PyResult<T> {
+    let fits = T::try_from(number).ok().filter(|number| range.contains(number));
+    fits.ok_or_else(|| refused(format!("{of}: {number} is not from {} to {}", range.start(), range.end())))
+}
+
+/// Columns and rows of pixels, of a tuple, a list or an array: every argument that is one is called `size`.
+#[derive(Clone, Copy)]
+pub struct Size(pub [u32; 2]);
+
+impl<'py> FromPyObject<'_, 'py> for Size {
+    type Error = PyErr;
+
+    fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let sides: Vec<Bound<'py, PyAny>> = of.extract()?;
+        let sides = sides.iter().map(whole).collect::<PyResult<Vec<_>>>()?;
+        let side = |number: i128| u32::try_from(number).ok().filter(|side| (1..=MAX_SIDE).contains(side));
+        let both = match *sides {
+            [width, height] => side(width).zip(side(height)),
+            _ => None,
+        };
+        let both = both.filter(|&(width, height)| u64::from(width) * u64::from(height) <= MAX_PIXELS);
+        let both = both.ok_or_else(|| {
+            refused(format!("size: {sides:?} is no width and height in pixels, each from 1 to {MAX_SIDE}, and {MAX_PIXELS} pixels at most"))
+        });
+        both.map(|(width, height)| Self([width, height]))
+    }
+}
+
+/// Three numbers; `of` names them in errors.
+pub fn triple(of: &str, numbers: Option<Vec<f64>>) -> PyResult<Option<[f64; 3]>> {
+    let three = |numbers: Vec<f64>| numbers.try_into().map_err(|numbers| refused(format!("{of}: {numbers:?} is not (x, y, z)")));
+    numbers.map(three).transpose()
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -135,6 +136,22 @@ def test_what_is_given_is_there_as_often_as_given() -> None:
     assert sorted(numbers[hits["triangle"]])[:2] == [0, 2] and len(hits) == 3
 
 
+def test_faces_of_hits_are_taken_without_misses() -> None:
+    vertices, faces = cube()
+    scene, numbers = lodray.Scene.exact(vertices, faces)
+    hits = scene.cast([[0.3, 0.2, 5.0], [9.0, 0.2, 5.0]], DOWN)
+    assert hits["triangle"][1] == -1
+    met = numbers[hits["triangle"][hits["tree"] >= 0]]
+    assert met.shape == (1,) and (vertices[faces[met[0]]][:, 2] == 1.0).all()
+
+
+def test_rays_of_a_picture_have_flat_hits(terrain: lodray.Scene) -> None:
+    rays = terrain.camera(size=(5, 4), distance=2.0).rays()
+    assert rays.shape == (4, 5) and same(terrain.cast(rays), terrain.cast(rays.reshape(-1))) and terrain.occluded(rays).shape == (20,)
+    with pytest.raises(lodray.LodrayError, match="origins: an array of shape"):
+        terrain.cast(rays["origin"], rays["direction"])
+
+
 def test_rays_follow_others_exactly() -> None:
     scene = lodray.Scene.build(*cube(), own_triangles=True)
     rays = np.zeros(2, dtype=lodray.RAY)
@@ -163,6 +180,17 @@ def test_rays_follow_others_exactly() -> None:
         (np.zeros((2, 7)), None, {}, "rays: an array of shape [2, 7]"),
         (np.zeros(2, dtype=[("origin", "f8", 3)]), None, {}, "rays: of type"),
         (["a"], DOWN, {}, "origins: "),
+        ([["1", "2", "3"]], DOWN, {}, "origins: of type <U1, not of numbers"),
+        (np.zeros((1, 3), dtype="M8[D]"), DOWN, {}, "origins: of type datetime64[D]"),
+        ([[0, 0, 0]], np.array([[0, 0, 1j]]), {}, "directions: of type complex128"),
+        (np.array([[0, 0, None]]), DOWN, {}, "origins: of type object"),
+        (np.zeros((1, 3), dtype=bool), DOWN, {}, "origins: of type bool"),
+        (np.ma.masked_array([[0.0, 0.0, 0.0]], [[0, 0, 1]]), DOWN, {}, "origins: entries of it are masked"),
+        (np.ma.masked_array(np.zeros(2, lodray.RAY), [0, 1]), None, {}, "rays: entries of it are masked"),
+        ([[0, 0, 0]], DOWN, {"cone": np.complex128(1)}, "cone: of type complex128"),
+        ([[0, 0, 0]], DOWN, {"t_max": np.timedelta64(3, "s")}, "t_max: of type timedelta64[s]"),
+        ([[0, 0, 0]], DOWN, {"t_max": "3"}, "t_max: of type"),
+        ([[0, 0, 0]], DOWN, {"t_max": 10**400}, "t_max: "),
         ([[0, 0, 0]], DOWN, {"method": "magic"}, "there is no method 'magic', but: lod"),
         ([[0, 0, 0]], DOWN, {"speed": 3}, "lod has no knob 'speed', but: delta"),
         ([[0, 0, 0]], DOWN, {"delta": -1}, "delta: '-1' is not a quality"),
@@ -173,6 +201,43 @@ def test_what_is_no_ray_is_named(rays: object, directions: object, more: dict[st
     with pytest.raises(lodray.LodrayError) as raised:
         scene.cast(rays, directions, **more)  # type: ignore[arg-type]
     assert said in str(raised.value), raised.value
+
+
+@pytest.mark.parametrize("array", [lambda own: (own, DOWN, {}), lambda own: ([[0, 0, 5]], own, {}), lambda own: ([[0, 0, 5]], DOWN, {"t_max": own})])
+def test_what_an_array_raises_is_passed_on(array: object) -> None:
+    scene = lodray.Scene.build(*cube(), own_triangles=True)
+
+    class Own:
+        def __init__(self, error: BaseException) -> None:
+            self.error = error
+
+        def __array__(self, *_: object, **__: object) -> np.ndarray:
+            raise self.error
+
+    for error in (KeyboardInterrupt(), SystemExit(3), MemoryError("full"), OSError("gone")):
+        rays, directions, more = array(Own(error))  # type: ignore[operator]
+        with pytest.raises(type(error)) as raised:
+            scene.cast(rays, directions, **more)
+        assert raised.value is error
+    for error in (TypeError("no"), ValueError("no")):
+        rays, directions, more = array(Own(error))  # type: ignore[operator]
+        with pytest.raises(lodray.LodrayError, match="(origins|directions|t_max): no") as raised:
+            scene.cast(rays, directions, **more)
+        assert raised.value.__cause__ is error
+
+
+def test_numbers_of_other_types_are_read() -> None:
+    scene = lodray.Scene.build(*cube(), own_triangles=True)
+    hits = scene.cast([[0.25, 0.5, 5.0]], DOWN)
+    for dtype in ("f4", "f2", ">f8", "longdouble"):
+        assert same(hits, scene.cast(np.array([[0.25, 0.5, 5.0]], dtype=dtype), np.array(DOWN, dtype=dtype)))
+    assert same(hits, scene.cast(np.ma.masked_array([[0.25, 0.5, 5.0]]), np.array(DOWN, dtype="i1")))
+    assert same(hits, scene.cast([(0.25, 0.5, 5)], (0, 0, -1), t_max=np.array(9.0), t_min=np.float32(1), cone=0))
+    assert np.isinf(scene.cast([[0.25, 0.5, 5.0]], DOWN, t_max=np.array(2.0))["t"][0])
+    far = scene.cast([[0.25, 0.5, 1e20]], DOWN)
+    assert same(far, scene.cast([[0.25, 0.5, 10**20]], DOWN)) and same(far, scene.cast([[Fraction(1, 4), Fraction(1, 2), 10**20]], DOWN))
+    unmasked = np.ma.masked_array(scene.camera(size=(4, 3)).rays())
+    assert same(scene.cast(unmasked), scene.cast(unmasked.data))
 
 
 def test_the_closest_alone_is_no_list_of_all() -> None:

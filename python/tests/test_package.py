@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import inspect
+import re
+import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import lodray
@@ -19,6 +23,34 @@ def test_all_that_is_shown_is_explained() -> None:
     assert len(members) > 30
     for of in shown + members:
         assert inspect.getdoc(of), of
+
+
+def test_help_has_all_fields_and_what_a_miss_has() -> None:
+    said = lodray.__doc__ or ""
+    for of in (lodray.RAY, lodray.HIT):
+        assert all(re.search(rf"\b{name}\b", said) for name in of.names or ()) and f"({of.itemsize} bytes)" in said
+    assert "fork" in said and "hits[\"tree\"] >= 0" in said
+    miss = lodray.Scene.generate("sphere", levels=1, base=8).cast([[0, 0, 9]], [0, 1, 0])[0]
+    for name in lodray.HIT.names or ():
+        shown = re.search(rf"^ +(?:\w+, )*{name}\b.*\((inf|-1|nan)\)$", said, re.MULTILINE)
+        assert shown and np.array_equal(np.unique(miss[name]), [float(shown[1])], equal_nan=True), name
+
+
+def test_the_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (Path(__file__).parent.parent / "README.md").read_text()
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    exec(code, {})
+    assert capsys.readouterr().out == re.findall(r"# (\[.*\])\n", code)[0] + "\n"
+
+
+def test_submodules_are_there_when_they_are_asked_for() -> None:
+    program = """
+import sys, lodray
+assert not any(name.startswith(("lodray.", "trimesh")) and name != "lodray._lodray" for name in sys.modules)
+assert lodray.trimesh.RayMeshIntersector and lodray.cluster.submit and "trimesh" not in sys.modules
+assert not hasattr(lodray, "nothing")
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_examples_are_there() -> None:

@@ -65,7 +65,26 @@ def test_methods_over_the_mesh_need_it() -> None:
         (lambda: lodray.Scene.generate("hills"), "scene: "),
         (lambda: lodray.Scene.generate("terrain", levels=11), "11"),
         (lambda: lodray.Scene.exact(np.zeros((3, 3)), [[0, 1, 2]]), "no triangle is left"),
-        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=3), "level 3"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=3), "level: 3 is not from 0 to 1"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=-1), "level: -1 is not from 0 to 1"),
+        (lambda: lodray.Scene.build(*cube(), levels=-1), "levels: -1 is not from 0 to 10"),
+        (lambda: lodray.Scene.build(*cube(), levels=2**200), "levels: "),
+        (lambda: lodray.Scene.build(*cube(), base=-1), "base: -1"),
+        (lambda: lodray.Scene.build(*cube(), base=0), "base: 0"),
+        (lambda: lodray.Scene.build(*cube(), max_error=1e-12), "give a max_error of"),
+        (lambda: lodray.Scene.build(*cube(), own_triangles=True, levels=2), "levels: goes with no own_triangles"),
+        (lambda: lodray.Scene.build(*cube(), own_triangles=True, base=2), "base: goes with no own_triangles"),
+        (lambda: lodray.Scene.build(*cube(), own_triangles=True, max_error=0.3), "max_error: goes with no own_triangles"),
+        (lambda: lodray.Scene.build(*cube(), own_triangles=True, crease_angle=30), "crease_angle: goes with no own_triangles"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3)), [[0, 1], [2]]), "faces: "),
+        (lambda: lodray.Scene.build(np.zeros((3, 3), dtype="M8[s]"), [[0, 1, 2]]), "vertices: of type datetime64[s]"),
+        (lambda: lodray.Scene.build(np.zeros((3, 3)), np.ma.masked_array([[0, 1, 2]], [[0, 0, 1]])), "faces: entries of it are masked"),
+        (lambda: lodray.Scene.generate("sphere", seed=-1), "seed: -1"),
+        (lambda: lodray.Scene.generate("sphere", seed=2**64), "seed: 18446744073709551616"),
+        (lambda: lodray.Scene.generate("sphere", base=-1), "base: -1"),
+        (lambda: lodray.Scene.generate("sphere", levels=-1), "levels: -1"),
+        (lambda: lodray.Scene.generate("room", walls=0), "walls: 0"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).plan([2.0], size=(0, 1)), "size: "),
     ],
 )
 def test_what_cannot_be_is_named(make: object, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,3 +121,39 @@ def test_errors_against_time_are_rows_of_a_table(tmp_path: Path) -> None:
     assert (tmp_path / "study" / "views.jsonl").is_file() and seen
     again = scene.error_time([2.0, 8.0], size=(64, 48), values={"delta": [1, 4]}, error_size=64, out=tmp_path / "study")
     assert again == document
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"distances": []}, "distances: there is none"),
+        ({"methods": []}, "methods: there is none"),
+        ({"methods": ["lod", "input-bvh"]}, "methods: input-bvh is over the mesh"),
+        ({"methods": ["magic"]}, "magic"),
+        ({"error_size": 0}, "error_size: 0"),
+        ({"error_size": -1}, "error_size: -1"),
+        ({"samples": 0}, "samples: 0"),
+        ({"samples": 3}, "samples: 3 is no square"),
+        ({"most_samples": -1}, "most_samples: -1"),
+        ({"values": {"delt": [1]}}, "no method trades error by 'delt'; there are: "),
+        ({"values": {"delta": "12"}}, "values: delta has 12, and no list of values"),
+        ({"values": {"delta": 2}}, "values: delta has 2, and no list of values"),
+        ({"values": {"delta": []}}, "values: delta has none"),
+        ({"values": {"delta": [-1]}}, "values: delta: '-1'"),
+        ({"values": {3: [1]}}, "values: 3"),
+        ({"size": (0, 3)}, "size: "),
+    ],
+)
+def test_errors_against_time_refuse_what_would_be_left_out(wrong: dict[str, object], said: str) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+    with pytest.raises(lodray.LodrayError) as raised:
+        scene.error_time(**({"distances": [2.0], "size": (8, 8)} | wrong))  # type: ignore[arg-type]
+    assert said in str(raised.value), raised.value
+
+
+def test_whole_numbers_are_those_of_numpy_too_and_nothing_else() -> None:
+    scene = lodray.Scene.generate("sphere", levels=np.int32(1), base=np.uint8(8), seed=2**64 - 1)  # type: ignore[arg-type]
+    assert scene.info["levels"] == 1 and scene.info["origin"]["generate"]["seed"] == 2**64 - 1
+    for wrong in ("1", 1.5, None):
+        with pytest.raises(TypeError):
+            lodray.Scene.generate("sphere", seed=wrong)  # type: ignore[arg-type]

@@ -11,6 +11,7 @@ from shapes import special
 
 trimesh = pytest.importorskip("trimesh")
 
+import lodray  # noqa: E402
 from lodray.trimesh import RayMeshIntersector  # noqa: E402
 
 ENGINES = ["ray_triangle", "ray_pyembree"]
@@ -196,3 +197,28 @@ def test_cavities_are_outside() -> None:
     inner.invert()
     mesh = trimesh.util.concatenate([outer, inner])
     assert intersector(mesh).contains_points([[0, 0, 0], [0.3, 0, 0], [2, 0, 0]]).tolist() == [False, True, False]
+
+
+def test_no_rays_have_no_results() -> None:
+    ours = intersector(trimesh.creation.box())
+    for none in ([], np.zeros((0, 3)), [[]]):
+        assert ours.intersects_first(none, none).shape == (0,) and ours.intersects_first(none, none).dtype == np.int64
+        assert ours.intersects_any(none, none).shape == (0,) and ours.intersects_any(none, none).dtype == np.bool_
+        assert all(len(part) == 0 for part in ours.intersects_location(none, none))
+    assert ours.intersects_first([0, 0, 5], [0, 0, -1]).shape == (1,)
+
+
+def test_what_is_no_ray_is_refused() -> None:
+    ours = intersector(trimesh.creation.box())
+    for wrong in (np.zeros((1, 2, 3)), np.zeros((2, 4)), np.zeros((2, 3), dtype=complex), [["a", "b", "c"]], np.ma.masked_array([[0.0, 0, 5]], [[1, 0, 0]])):
+        for call in (ours.intersects_first, ours.intersects_any, ours.intersects_id, ours.intersects_location):
+            with pytest.raises(lodray.LodrayError, match="ray_origins: "):
+                call(wrong, wrong)
+    with pytest.raises(lodray.LodrayError, match="ray_directions: ") as raised:
+        ours.intersects_any([[0, 0, 5]], [[0, 0], [1]])
+    assert isinstance(raised.value.__cause__, ValueError)
+    with pytest.raises(lodray.LodrayError, match="points: of type complex128"):
+        ours.contains_points([[0, 0, 1j]])
+    for call in (ours.intersects_first, ours.intersects_any, ours.intersects_id, ours.intersects_location):
+        with pytest.raises(TypeError, match="multiple_hit"):
+            call([[0, 0, 5]], [[0, 0, -1]], multiple_hit=False)
