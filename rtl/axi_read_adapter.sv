@@ -15,7 +15,7 @@ module axi_read_adapter #(
 ) (
   input  logic                     clk_i,
   input  logic                     rst_ni,
-  // Byte address of line 0, a multiple of 32; held still while anything is under way.
+  // Byte address of line 0, a multiple of 32; held still from the cycle before a request until it is taken.
   input  logic [ADDRESS_W-1:0]     base_i,
   // Some read has no answer yet: no reset of this side alone.
   output logic                     busy_o,

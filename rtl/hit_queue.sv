@@ -3,7 +3,7 @@
 /// First in, first out: hits on their way from the triangle test to the division.
 ///
 /// `data_o` is the oldest item, valid while `empty_o` is low; a pop drops it at the end of the cycle. An item pushed is seen from the next cycle on. The caller never has
-/// more than `DEPTH` items under way, so there is no full flag. A memory with one write and one clocked read port, never at the same place in one cycle: with a pop the item behind is read, and one
+/// more than `DEPTH` items under way, so there is no full flag. A memory with one write and one clocked read port, never at the same place in one cycle: with a pop the item behind is read if there is one, and one
 /// that finds nothing before it is kept beside the memory too. Only pointers and length are reset.
 module hit_queue #(
   parameter int unsigned W = 1,
@@ -40,9 +40,11 @@ module hit_queue #(
   logic [LEN_W-1:0]   len_q;
   logic [INDEX_W-1:0] behind;
   logic               direct;
+  logic               reads;
 
   assign behind  = (head_q == LAST) ? '0 : head_q + INDEX_W'(1);
   assign direct  = empty_o || (pop_i && len_q == LEN_W'(1));
+  assign reads   = pop_i && !direct;
   assign data_o  = is_direct_q ? direct_q : read;
   assign empty_o = len_q == '0;
 
@@ -63,7 +65,7 @@ module hit_queue #(
   memory_1w1r #(.W(W), .WORDS(DEPTH), .DISTRIBUTED(1'b1), .PARITY(PARITY)) u_items (
     .clk_i, .test_i,
     .write_i(push_i), .write_place_i(tail_q), .data_i,
-    .read_i(pop_i), .read_place_i(behind), .use_i(pop_i && !is_direct_q), .data_o(read), .fault_o
+    .read_i(reads), .read_place_i(behind), .use_i(pop_i && !is_direct_q), .data_o(read), .fault_o
   );
 
   always_ff @(posedge clk_i) begin
@@ -75,6 +77,7 @@ module hit_queue #(
     if (rst_ni) begin
       assert (!(push_i && !pop_i && len_q == LEN_W'(DEPTH)));
       assert (!(pop_i && empty_o));
+      assert (!(push_i && reads && tail_q == behind));
     end
   end
 

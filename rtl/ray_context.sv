@@ -846,7 +846,7 @@ module ray_context #(
     end
 
     split_triangles #(.W(CORNER_W), .LEVELS(SPLITS), .PARITY(MEMORY_PARITY)) u_splits (
-      .clk_i, .test_i(memory_test_i),
+      .clk_i, .rst_ni, .test_i(memory_test_i),
       .root_write_i(root_comes), .root_corners_i(roots_now),
       .corners_write_i(morph_grant_i && !last_split), .inserted_write_i(morph_valid_i && !last_split), .level_i(level), .inserted_i(inserted_now),
       .read_i(enter_root || enter_node), .root_i(enter_root), .parent_i(entry.level - 4'd1),

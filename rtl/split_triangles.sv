@@ -5,13 +5,14 @@
 /// Child k < 3 of a triangle has its corner k where it is, and two inserted vertices; child 3 has all three of these. So bank i holds corner i and inserted vertex i of each level, and a node's
 /// triangle is one word of each bank: three narrow memories instead of one of twice their width, each with one write and one read port, never used in the same cycle.
 /// `corners_o` is there from the cycle after `read_i`, as long as `child_i` stands still. A root is written with `root_write_i` and read with `root_i`, as its own child 3.
-/// A node that splits is written in two cycles: its corners, which are those at `corners_o`, and its inserted vertices. Nothing is reset.
+/// A node that splits is written in two cycles: its corners, which are those at `corners_o`, and its inserted vertices. No word is reset.
 module split_triangles #(
   parameter int unsigned W = 1,
   parameter int unsigned LEVELS = 1,
   parameter bit PARITY = 1'b0
 ) (
   input  logic              clk_i,
+  input  logic              rst_ni,
   input  lod_pkg::memory_test_t test_i,
   input  logic              root_write_i,
   input  logic [2:0][W-1:0] root_corners_i,
@@ -45,7 +46,7 @@ module split_triangles #(
   if (PARITY) begin : g_used
     logic used_q;
     assign used = used_q;
-    always_ff @(posedge clk_i) used_q <= read_i;
+    always_ff @(posedge clk_i) used_q <= rst_ni && read_i;
   end else begin : g_not_looked_at
     assign used = 1'b0;
   end
@@ -71,7 +72,7 @@ module split_triangles #(
   assign corners_o = {corner2, corner1, corner0};
 
   always_ff @(posedge clk_i) begin
-    assert (32'(root_write_i) + 32'(corners_write_i) + 32'(inserted_write_i) + 32'(read_i) <= 1);
+    if (rst_ni) assert (32'(root_write_i) + 32'(corners_write_i) + 32'(inserted_write_i) + 32'(read_i) <= 1);
   end
 
 endmodule

@@ -36,9 +36,11 @@ module traversal_stack #(
   logic [INDEX_W-1:0] next_top;
   // What was read is no longer the top.
   logic stale_q;
+  // The top is read: there is one, so that its place is one of the memory's.
+  logic reads;
 
-  // What is read there while empty, when this wraps, is never used.
   assign top      = len_q - LEN_W'(1);
+  assign reads    = !push_i && (pop_i ? top != '0 : stale_q && !empty_o);
   assign next_top = INDEX_W'(top) - INDEX_W'(pop_i);
   assign entry_o  = lod_pkg::whole_entry(top_word);
   assign empty_o  = len_q == '0;
@@ -56,7 +58,7 @@ module traversal_stack #(
   memory_1w1r #(.W(lod_pkg::KEPT_ENTRY_W), .WORDS(DEPTH), .DISTRIBUTED(1'b1), .PARITY(PARITY)) u_entries (
     .clk_i, .test_i,
     .write_i(push_i), .write_place_i(INDEX_W'(len_q)), .data_i(lod_pkg::keep_entry(entry_i)),
-    .read_i(!push_i && (pop_i || stale_q)), .read_place_i(next_top), .use_i(pop_i), .data_o(top_word), .fault_o
+    .read_i(reads), .read_place_i(next_top), .use_i(pop_i), .data_o(top_word), .fault_o
   );
 
   always_ff @(posedge clk_i) stale_q <= push_i;

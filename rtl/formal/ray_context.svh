@@ -35,7 +35,7 @@
   lod_pkg::scene_config_t scene_q;
   always_ff @(posedge clk_i) scene_q <= scene_i;
   always_comb assume (idle_o || scene_i == scene_q);
-  // Before the first reset nothing comes: the rule of `split_triangles`, which has no reset, is not about that.
+  // Before the first reset nothing comes.
   always_comb assume (live || (!morph_grant_i && !morph_valid_i && !line_valid_i));
 
   // What the stack read last is its top again before anything is popped.

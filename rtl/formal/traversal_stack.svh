@@ -28,6 +28,8 @@
     if (live_q) begin
       assert (empty_o == (depth_q == '0) && full_o == (depth_q == LEN_W'(DEPTH)));
       assert (depth_q != place + LEN_W'(1) || stale_q || entry_o == watched_q);
+      // Nothing is read where the memory has no word.
+      assert (!reads || 32'(next_top) < DEPTH);
       // Hold the induction together.
       assert (len_q == depth_q && depth_q <= LEN_W'(DEPTH));
       assert (depth_q <= place || \u_entries.shown  == lod_pkg::keep_entry(watched_q));

@@ -12,7 +12,6 @@ module axi_read_adapter_rules #(
   input logic                               clk_i,
   input logic                               rst_ni,
   input logic [ADDRESS_W-1:0]               base_i,
-  input logic                               busy_i,
   input logic                               mem_valid_i,
   input logic [lod_pkg::LINE_ADDRESS_W-1:0] line_i,
   input logic                               arvalid_i,
@@ -35,7 +34,7 @@ module axi_read_adapter_rules #(
   localparam int unsigned SUM_W = 72;
 
   // What stood at the ports in the cycle before and was not taken; requests that beats are due for, and how many of each have come.
-  logic                      waits_q, was_reset_q, was_busy_q;
+  logic                      waits_q, was_reset_q;
   logic [REQUEST_W-1:0]      request, request_q;
   logic [ADDRESS_W-1:0]      base_q;
   logic [(1<<ID_W)-1:0]      due_q;
@@ -47,10 +46,10 @@ module axi_read_adapter_rules #(
     {request_q, base_q} <= {request, base_i};
     was_reset_q <= !rst_ni;
     if (!rst_ni) begin
-      {waits_q, was_busy_q} <= '0;
+      waits_q <= 1'b0;
       due_q <= '0;
     end else begin
-      {waits_q, was_busy_q} <= {arvalid_i && !arready_i, busy_i};
+      waits_q <= arvalid_i && !arready_i;
       if (rvalid_i && rready_i) begin
         beats_q[rid_i] <= beats_q[rid_i] + 8'd1;
         if (rlast_i) due_q[rid_i] <= 1'b0;
@@ -82,7 +81,7 @@ module axi_read_adapter_rules #(
       assert (!rvalid_i || due_q[rid_i]) else $error("r: a beat without a request");
       assert (!rvalid_i || !due_q[rid_i] || rlast_i == (beats_q[rid_i] == lengths_q[rid_i])) else $error("r: the last beat is not marked, or another is");
       assert (base_i[4:0] == '0 || !mem_valid_i) else $error("base_i: not a multiple of 32");
-      assert (!(was_busy_q && busy_i) || base_i == base_q) else $error("base_i: it changed while a read was under way");
+      assert (!mem_valid_i || base_i == base_q) else $error("base_i: it changed beside a request");
       assert (!mem_valid_i || line_end <= SUM_W'(1) << ADDRESS_W) else $error("mem_i: a line behind the last address of the bus");
     end
   end
@@ -90,7 +89,7 @@ module axi_read_adapter_rules #(
 endmodule
 
 bind axi_read_adapter axi_read_adapter_rules #(.DATA_W(DATA_W), .ADDRESS_W(ADDRESS_W), .READS(READS)) u_rules (
-  .clk_i, .rst_ni, .base_i, .busy_i(busy_o), .mem_valid_i, .line_i(mem_i.address),
+  .clk_i, .rst_ni, .base_i, .mem_valid_i, .line_i(mem_i.address),
   .arvalid_i(axi_arvalid_o), .arready_i(axi_arready_i), .arid_i(axi_arid_o), .araddr_i(axi_araddr_o), .arlen_i(axi_arlen_o), .arsize_i(axi_arsize_o),
   .arburst_i(axi_arburst_o), .rvalid_i(axi_rvalid_i), .rready_i(axi_rready_o), .rid_i(axi_rid_i), .rlast_i(axi_rlast_i)
 );

@@ -127,3 +127,44 @@ fn a_frame_over_narrow_beats() {
     let manners = Manners { refuses: 1, rests: 2, latency: (1, 30), interleaves: true, errors: 0 };
     frame::<1, 2>(procedural::Scene::Terrain, VertexForm::Exact, 2, 1, manners);
 }
+
+/// Whether a unit with a ray at its port, or on its way, passes the rules if the base moves in that cycle.
+fn base_may_move(taken_before: u64, moves: bool) -> bool {
+    let model = Build::rtl("traversal_unit_axi")
+        .parameter("CONTEXTS", 2)
+        .parameter("ADDRESS_W", 48)
+        .model()
+        .unwrap_or_else(|error| panic!("{error}"));
+    let mut sim = Sim::new(&model, 5);
+    let bus = Bus::<8, 2, 48>::new(&sim);
+    let (reset, base_i, valid_i) = (input::<bool>(&sim, "rst_ni"), input::<U<48>>(&sim, "base_i"), input::<bool>(&sim, "valid_i"));
+    let (scene_i, in_i) = (input::<SceneConfig>(&sim, "scene_i"), input::<RayIn>(&sim, "in_i"));
+    let (ready_o, busy_o) = (output::<bool>(&sim, "ready_o"), output::<bool>(&sim, "busy_o"));
+    sim.poke(scene_i, &SceneConfig::default());
+    sim.poke(in_i, &RayIn::default());
+    sim.poke(base_i, &U::<48>::new(0));
+    sim.poke(valid_i, &false);
+    sim.poke(reset, &false);
+    bus.drive(&mut sim, false, None, &mut Rng(1));
+    (0..2).for_each(|_| sim.clock());
+    sim.poke(reset, &true);
+    // A free base: no ray is there.
+    sim.poke(base_i, &U::<48>::new(64));
+    sim.clock();
+    for cycle in 0..=taken_before {
+        sim.poke(valid_i, &(cycle == 0));
+        sim.poke(base_i, &U::<48>::new(if moves && cycle == taken_before { 128 } else { 64 }));
+        sim.eval();
+        assert!(if cycle == 0 { sim.peek::<bool>(ready_o) } else { sim.peek::<bool>(busy_o) });
+        sim.clock();
+    }
+    !sim.failed()
+}
+
+#[test]
+fn the_base_stands_still_while_a_ray_is_under_way() {
+    for cycles in [0, 1, 3] {
+        assert!(base_may_move(cycles, false), "a base that stood still was rejected");
+        assert!(!base_may_move(cycles, true), "a base that moved {cycles} cycles behind a ray passed");
+    }
+}

@@ -51,7 +51,7 @@ const RULES: [(&str, &[Fault]); 12] = [
     ("r: a beat without a request", &[Fault::BeatOfNoRequest]),
     ("r: the last beat is not marked, or another is", &[Fault::LastEarly, Fault::LastNotMarked]),
     ("base_i: not a multiple of 32", &[Fault::BaseNotALine]),
-    ("base_i: it changed while a read was under way", &[Fault::BaseMoved]),
+    ("base_i: it changed beside a request", &[Fault::BaseMoved]),
     ("mem_i: a line behind the last address of the bus", &[Fault::BehindTheBus]),
 ];
 
@@ -147,7 +147,8 @@ fn passes(model: &Arc<Model>, fault: Fault, rules: u64) -> bool {
         }
         let base = match fault {
             Fault::BaseNotALine => BASE + 8,
-            Fault::BaseMoved if cycle >= 100 => 2 * BASE,
+            // In a cycle with a request.
+            Fault::BaseMoved if cycle >= 101 => 2 * BASE,
             Fault::BehindTheBus => u64::from(u32::MAX) - 31,
             _ => BASE,
         };
