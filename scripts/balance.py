@@ -132,7 +132,7 @@ def phase_rows(args, machine):
             words = ["simulate", scene(args, name), "--size", args.size, "--distance", distance, "--machine", machine, "--compute", "units", "--ease"]
             runs = [kept(args, [*words, *(["--tiles-in-turn", turn] if turn > 1 else [])]) for turn in IN_TURN]
             blocks = [block for block in runs[0]["units"]["eased"] if block in runs[0]["units"]["phases"]["blocks"]]
-            for block in [*blocks, "all"]:
+            for block in [*blocks, "all", "latency", "split_lines"]:
                 cells = []
                 for run in runs:
                     of = run["units"]["phases"]["blocks"].get(block)

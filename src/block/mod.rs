@@ -55,6 +55,11 @@ impl Timing {
     pub const fn pipelined(latency: u32) -> Self {
         Self { latency, interval: 1 }
     }
+
+    /// As often, with the result a cycle later: no block's, but what latency costs ([`Eased`](crate::hardware::Eased)).
+    pub(crate) const fn at_once(self) -> Self {
+        Self { latency: 1, ..self }
+    }
 }
 
 /// A combinational block: what it computes, and the cycles its pipeline takes for it.

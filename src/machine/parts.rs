@@ -143,7 +143,7 @@ pub struct Units {
     /// Rays can start on a surface: blocks for exact starts, and for rays that decide for others.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub secondary: bool,
-    /// Parts that keep no ray waiting, to see what it costs that they do: names as `simulate --ease` prints them, joined by `+`. No unit is so.
+    /// What rays do not wait for, to see what it costs that they do: names as `simulate --ease` prints them, joined by `+`. No unit is so.
     #[serde(default, skip_serializing_if = "Eased::is_none")]
     pub eased: Eased,
     /// A unit of a plan: what the keys above do not say is as there. Machine files have none.

@@ -60,7 +60,10 @@ fn a_block_that_keeps_nobody_waiting_makes_the_frame_shorter_by_what_it_cost() {
     assert!(plain["units"].get("eased").is_none());
     let eased = r["units"]["eased"].as_object().unwrap();
     let names: Vec<&str> = eased.keys().map(String::as_str).collect();
-    assert_eq!(names, ["all", "bary_map", "child_test", "hit_divide", "lod_test", "node_address", "ray_setup", "tessellate", "tri_test"]);
+    let blocks = ["bary_map", "child_test", "hit_divide", "lod_test", "node_address", "ray_setup", "tessellate", "tri_test"];
+    let mut all = [&blocks[..], &["all", "latency", "split_lines"]].concat();
+    all.sort_unstable();
+    assert_eq!(names, all);
     // What a machine description says gives the same.
     for (name, with) in eased {
         let alone = desk.json(&format!("{SHOT} --set units.eased={name}"));
@@ -68,20 +71,31 @@ fn a_block_that_keeps_nobody_waiting_makes_the_frame_shorter_by_what_it_cost() {
         for what in ["/hits", "/l1/requests"] {
             assert_eq!(number(&alone, what), number(&plain, what), "{name}");
         }
-        let load = |block: &str| number(&alone, &format!("/units/phases/blocks/{block}/load"));
-        assert!(name == "all" || load(name) == 0.0, "{name}: {}", load(name));
+        if blocks.contains(&name.as_str()) {
+            assert_eq!(number(&alone, &format!("/units/phases/blocks/{name}/load")), 0.0, "{name}");
+        }
     }
     // The block that is full the longest costs the most of all.
     let fullest = |name: &&str| number(&plain, &format!("/units/phases/blocks/{name}/fullest"));
-    let most = names[1..].iter().copied().max_by(|a, b| fullest(a).total_cmp(&fullest(b))).unwrap();
-    let least = eased.iter().filter(|(name, _)| *name != "all").min_by_key(|(_, with)| with.as_u64()).unwrap();
+    let most = blocks.iter().copied().max_by(|a, b| fullest(a).total_cmp(&fullest(b))).unwrap();
+    let least = eased.iter().filter(|(name, _)| blocks.contains(&name.as_str())).min_by_key(|(_, with)| with.as_u64()).unwrap();
     assert_eq!(most, least.0, "{eased:?}");
     assert!(least.1.as_f64().unwrap() < 0.97 * cycles && eased["all"].as_f64().unwrap() < least.1.as_f64().unwrap(), "{eased:?}");
+    // So do blocks that are as seldom free but done at once, and lines that are there when the LOD test is.
+    for name in ["latency", "split_lines"] {
+        assert!(eased[name].as_f64().unwrap() < cycles, "{name}: {eased:?}");
+    }
+    assert!(eased["latency"].as_f64().unwrap() < 0.97 * cycles, "{eased:?}");
+    let late = |r: &Value| number(r, "/units/states/FETCH");
+    let early = desk.json(&format!("{SHOT} --set units.eased=split_lines"));
+    assert!(late(&early) < 0.7 * late(&plain), "{} of {}", late(&early), late(&plain));
+    let none = desk.json(&format!("{SHOT} --method bvh6 --ease"));
+    assert!(none["units"]["eased"].get("split_lines").is_none() && none["units"]["eased"].get("latency").is_some());
     // Two at once.
     let two = desk.json(&format!("{SHOT} --set units.eased=ray_setup+lod_test"));
     assert_eq!(two["setup"]["machine"]["description"]["units"]["eased"], "ray_setup+lod_test");
     let text = desk.run(&format!("{SHOT} --ease"));
-    for word in ["load", "90 % full", "the fullest", "cycles, eased", "none, all"] {
+    for word in ["load", "90 % full", "the fullest", "cycles, eased", "none, all", "  latency", "  split_lines"] {
         assert!(text.contains(word), "no {word} in\n{text}");
     }
 }

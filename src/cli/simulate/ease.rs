@@ -1,11 +1,12 @@
-//! `--ease`: the same frame again with each part of the units in turn so that it keeps no ray waiting.
+//! `--ease`: the same frame again with each of what rays wait for in units turned off.
 
-use lodray::block::Operation;
+use lodray::block::tessellate::Tessellate;
+use lodray::block::{Block, Operation};
 use lodray::hardware::Eased;
 use lodray::report::result::SimResult;
 use lodray::scene::{Outcome, SimulateError, Target};
 
-/// Each target, and behind it the same with each part eased.
+/// Each target, and behind it the same with each eased.
 pub fn targets(all: &[Target]) -> Vec<Target> {
     let eased = |target: &Target| {
         let with = |(_, eased)| {
@@ -38,6 +39,7 @@ fn with(mut result: SimResult, others: Vec<(String, u64)>) -> SimResult {
         // Units for rays from a surface have other blocks in these places.
         let block = Operation::ALL.iter().find(|operation| operation.name() == name).map(|&operation| hardware.block(operation).name());
         let works = |block: &str| units.blocks.get(block).is_some_and(|block| block.operations > 0);
+        let block = if name == "split_lines" { Some(Tessellate::NAME) } else { block };
         if block.is_none_or(works) {
             units.eased.insert(name, cycles);
         }

@@ -58,7 +58,7 @@ pub struct Args {
     /// How compute is simulated
     #[arg(long, value_parser = named::<Compute>(), default_value = Compute::Free.name())]
     compute: Compute,
-    /// Also simulate the frame with each part of the traversal units in turn keeping no ray waiting: what it costs that they do; needs --compute units
+    /// Also simulate the frame without each thing that rays wait for in units: blocks that are not free, latency, lines of splits; needs --compute units
     #[arg(long, conflicts_with = "vcd")]
     ease: bool,
     #[command(flatten)]

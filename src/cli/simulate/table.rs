@@ -180,6 +180,10 @@ fn blocks(lines: &mut Lines, units: &UnitsResult) {
         let done = [grouped(block.operations), percent(block.busy), percent(block.refused)];
         lines.line(&format!("  {name}"), done.into_iter().chain(full).chain([eased]));
     }
+    // What was eased and is no block.
+    for (name, &cycles) in units.eased.iter().filter(|(name, _)| !units.blocks.contains_key(*name) && *name != "all") {
+        lines.line(&format!("  {name}"), ["", "", "", "", "", "", &grouped(cycles)]);
+    }
     if let Some(phases) = &units.phases {
         let all = units.eased.get("all").map_or(String::new(), |&cycles| grouped(cycles));
         lines.line("  none, all", ["", "", "", "", "", &percent(phases.none_full), &all]);

@@ -24,7 +24,7 @@ pub struct UnitsResult {
     /// How full blocks were over time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phases: Option<PhasesResult>,
-    /// Cycles of the run if this part of every unit kept no ray waiting (`simulate --ease`, [`Eased`](crate::hardware::Eased)).
+    /// Cycles of the run if no ray waited for this in any unit (`simulate --ease`, [`Eased`](crate::hardware::Eased)).
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub eased: BTreeMap<String, u64>,
 }

@@ -35,7 +35,7 @@ impl<R: Steps> UnitTiming<R> {
         let context = &mut self.contexts[who];
         self.operations.add(Operation::NodeAddress, 1);
         let request = context.ask_line(who, now);
-        if context.owed == 0 {
+        if context.owed == 0 && context.state == State::Fetch {
             let (since, end) = self.fetched(who, now);
             self.port_cycles += end - since;
         }
@@ -222,10 +222,16 @@ impl<R: Steps> UnitTiming<R> {
                 self.states[State::Lod as usize] += 1;
                 return Some(at + 1);
             }
-            Act::LodTest { .. } => context.enter(State::Lod, at),
+            Act::LodTest { .. } => {
+                context.enter(State::Lod, at);
+                if self.splits_early && context.want_split(at) {
+                    self.ask_for(Resource::Fetch, who, now);
+                }
+            }
             Act::Tessellate => context.enter(State::Morph, at),
             Act::Triangles { count, hits } => context.enter_triangles(count, hits, at),
         }
+        let context = &mut self.contexts[who];
         if context.later.owed > 0 && !context.later.asked {
             context.later.waits = true;
         } else {

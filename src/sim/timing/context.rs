@@ -37,6 +37,8 @@ pub struct ContextTiming<R> {
 pub struct Later {
     /// They are the next step's, which asks for no others.
     pub asked: bool,
+    /// Some are still to be asked for, beside what a block does: the step need not wait until they are.
+    pub beside: bool,
     /// The step has begun, and waits for them.
     pub waits: bool,
     /// How many have not come, and the cycle from which the last that came is there.
@@ -134,13 +136,25 @@ impl<R: Steps> ContextTiming<R> {
         self.line += 1;
         self.place += 1;
         self.want -= 1;
-        if self.later.asked {
+        if self.later.beside {
+            self.later.beside = self.want > 0;
+        } else if self.later.asked {
             // They must only be asked for.
             self.settle(now + 1);
         } else if self.want == 0 {
             self.join();
         }
         (request, self.want > 0)
+    }
+
+    /// Wants the lines of the split that the LOD test is for, from cycle `at` on; whether it is for one.
+    pub fn want_split(&mut self, at: u64) -> bool {
+        let step = self.step();
+        let Some(fetch) = step.fetch.filter(|_| step.act == Act::Tessellate && self.later.owed == 0) else { return false };
+        self.want(fetch);
+        self.later =
+            Later { asked: true, beside: true, waits: false, owed: fetch.lines, ready: at, first: fetch.place, lines: fetch.lines };
+        true
     }
 
     /// Goes on with the lines that are asked for together with those so far, if there are any.
@@ -155,8 +169,15 @@ impl<R: Steps> ContextTiming<R> {
             self.advance();
             self.act = step.act;
         } else {
-            self.later =
-                Later { asked: true, waits: false, owed: fetch.lines, ready: self.entered, first: fetch.place, lines: fetch.lines };
+            self.later = Later {
+                asked: true,
+                beside: false,
+                waits: false,
+                owed: fetch.lines,
+                ready: self.entered,
+                first: fetch.place,
+                lines: fetch.lines,
+            };
         }
     }
 

@@ -28,7 +28,7 @@ impl<R: Steps> UnitTiming<R> {
     }
 
     #[inline(always)]
-    fn ask_for(&mut self, resource: Resource, who: usize, now: u64) {
+    pub(super) fn ask_for(&mut self, resource: Resource, who: usize, now: u64) {
         let asking = &mut self.asking[resource as usize];
         if *asking == 0 {
             self.since[resource as usize] = now;

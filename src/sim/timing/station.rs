@@ -32,6 +32,11 @@ impl Station {
         Self { eased: true, ..self }
     }
 
+    /// The same one, which has each result a cycle later.
+    pub fn at_once(self) -> Self {
+        Self { timing: self.timing.at_once(), ..self }
+    }
+
     /// It takes any number of inputs in a cycle.
     pub fn is_eased(&self) -> bool {
         self.eased

@@ -42,6 +42,8 @@ pub struct UnitTiming<R> {
     pub(super) chooses_levels: bool,
     pub(super) has_deciders: bool,
     pub(super) hit_mapping: bool,
+    /// Lines of a split are asked for with the LOD test.
+    pub(super) splits_early: bool,
     registers_results: bool,
     pub(super) idle: u64,
     /// Requests on their way through `node_address`, and since when.
@@ -111,6 +113,7 @@ impl<R: Steps> UnitTiming<R> {
             chooses_levels: config.chooses_levels(),
             has_deciders: config.has_deciders(),
             hit_mapping: config.hit_mapping,
+            splits_early: false,
             registers_results: config.registers_results(),
             idle: u64::MAX >> (MAX_CONTEXTS - config.contexts),
             requests: VecDeque::new(),
@@ -127,11 +130,19 @@ impl<R: Steps> UnitTiming<R> {
         }
     }
 
-    /// The same unit with parts that keep nobody waiting.
+    /// The same unit with what is eased.
     pub fn easing(mut self, eased: Eased) -> Self {
         for resource in Resource::ALL.into_iter().filter(|&resource| eased.has(resource)) {
             self.stations[resource as usize] = self.stations[resource as usize].clone().eased();
         }
+        if eased.has_latency() {
+            // A request's way to the port is none to a result.
+            for resource in Resource::ALL.into_iter().filter(|&resource| resource != Resource::Fetch) {
+                self.stations[resource as usize] = self.stations[resource as usize].clone().at_once();
+            }
+            self.nodes = self.nodes.map(Timing::at_once);
+        }
+        self.splits_early = eased.has_split_lines();
         self
     }
 
