@@ -4,12 +4,12 @@ use super::args::{levels, whole};
 use super::common::is_quiet;
 use super::form::FormArgs;
 use super::info;
-use super::input::{FILE, InputFile};
+use super::input::InputFile;
 use super::mesh::{MeshArgs, Source};
 use super::output::{busy, check_target, print_line, progress, warn};
 use super::subdivide::SubdivideArgs;
 use anyhow::Context;
-use lodray::format::Scene;
+use lodray::format::{Meta, Scene};
 use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh};
 use lodray::scene::{BuildError, BuildOptions};
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mesh = args.reading.read(&source, args.strict)?;
     let mut origin = serde_json::Map::new();
     if let Some((format, weld)) = args.reading.found_again(&source) {
-        origin.insert(FILE.to_owned(), serde_json::to_value(InputFile::of(source.path, format, weld)?)?);
+        origin.insert(Meta::FILE.to_owned(), serde_json::to_value(InputFile::of(source.path, format, weld)?)?);
     }
     let remesh = RemeshOptions {
         levels: args.levels,

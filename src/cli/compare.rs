@@ -1,6 +1,6 @@
 //! `compare`: two results of simulations side by side.
 
-use super::output::{print_json, print_table};
+use super::output::{print_json, print_table, read_text};
 use super::simulate::amount;
 use crate::cli::bars::Bars;
 use anyhow::Context;
@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn read(what: &str) -> anyhow::Result<SimResult> {
     let numbered = what.rsplit_once(':').and_then(|(path, n)| Some((path, Some(n.parse::<usize>().ok()?))));
     let (path, wanted) = numbered.filter(|_| !Path::new(what).exists()).unwrap_or((what, None));
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {path}"))?;
+    let text = read_text(Path::new(path))?;
     let mut results = results(&text, path, &Bars).with_context(|| format!("{path}: not results of a simulation"))?;
     let among = results.len();
     let has = || format!("{path}: has {}", count(among, "result"));

@@ -4,6 +4,7 @@ use super::args::levels;
 use super::output::{busy, check_target, open, print_json, remark};
 use anyhow::Context;
 use lodray::format::{export_level, write_and_rename};
+use lodray::mesh::MeshFormat;
 use lodray::study::{count, grouped};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,6 +26,8 @@ pub struct Args {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_target(&args.out, &[&args.scene])?;
+    let other = MeshFormat::of(&args.out).filter(|&format| format != MeshFormat::Obj);
+    anyhow::ensure!(other.is_none(), "{}: export writes OBJ; let the name end in .obj", args.out.display());
     let scene = open(&args.scene)?;
     let level = args.level.unwrap_or(scene.levels());
     anyhow::ensure!(level <= scene.levels(), "--level {level} is beyond {}'s finest level {}", args.scene.display(), scene.levels());

@@ -1,8 +1,7 @@
 //! `info`: what a scene file holds.
 
-use super::input::FILE;
 use super::output::{open_any, plain, print_json, print_line};
-use lodray::format::{FileSection, JobRegion, JobView, Scene};
+use lodray::format::{FileSection, JobRegion, JobView, Meta, Scene};
 use lodray::mesh::{BoundKind, Distance, TwoSidedDistance};
 use lodray::num::{PADDING_BITS, VertexForm};
 use lodray::rays::ModelSpace;
@@ -163,7 +162,12 @@ fn summary(i: &Info<'_>) -> String {
     let [width, height, depth] = i.size.map(plain);
     let mut lines = vec![("scene", i.name.to_owned())];
     if let Some(read) = i.origin["mesh"]["triangles_read"].as_u64() {
-        let file = i.origin[FILE]["name"].as_str().map_or_else(String::new, |name| format!(" of {name}"));
+        let name = |key: &str| i.origin[key]["name"].as_str();
+        let file = match (name(Meta::FILE), name(Meta::FILE_AT_REST)) {
+            (Some(file), _) => format!(" of {file}"),
+            (None, Some(file)) => format!(" of {file}; vertices were moved since (refit), so that nothing is known of distances to it"),
+            (None, None) => String::new(),
+        };
         lines.push(("mesh", format!("{}{file}", count(read as usize, "triangle"))));
     }
     lines.extend([

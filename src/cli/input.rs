@@ -1,8 +1,8 @@
 //! The mesh file that a scene was built from: recorded by `build`, found again by name and hash.
 
-use super::output::{busy, remark};
+use super::output::{busy, remark, warn};
 use anyhow::Context;
-use lodray::format::Scene;
+use lodray::format::{Meta, Scene};
 use lodray::mesh::{MeshFormat, read_as};
 use lodray::method::Over;
 use lodray::scene::BuildOptions;
@@ -10,9 +10,6 @@ use lodray::study::Chosen;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
-
-/// Where the record lies in a scene's origin.
-pub const FILE: &str = "file";
 
 /// What `build` records of its mesh file.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +65,7 @@ fn hash(bytes: &[u8]) -> String {
 
 /// Whether the mesh that a scene file was built from is at hand.
 pub fn is_found(scene: &Path, args: &InputArgs) -> bool {
-    let record = Scene::open(scene).ok().and_then(|scene| InputFile::deserialize(&scene.meta().origin[FILE]).ok());
+    let record = Scene::open(scene).ok().and_then(|scene| InputFile::deserialize(&scene.meta().origin[Meta::FILE]).ok());
     record.is_some_and(|file| file.find(scene, &args.mesh).is_some())
 }
 
@@ -84,7 +81,12 @@ pub fn with_input<'a>(scene: Scene, path: &Path, args: &InputArgs, methods: impl
             Err(why) => Err(why.context(format!("--method {}", chosen.method.name))),
         },
         None if takes => with_input_if_found(scene, path, args, "clusters and R-LODs are of the finest level"),
-        None => Ok(scene),
+        None => {
+            if !args.mesh.is_empty() {
+                warn("note: --mesh is not used: no method here takes the mesh");
+            }
+            Ok(scene)
+        }
     }
 }
 
@@ -93,7 +95,7 @@ pub fn with_input_if_found(scene: Scene, path: &Path, args: &InputArgs, without:
     match mesh_of(&scene, path, args) {
         Ok(input) => return Ok(scene.with_input(input)),
         // A scene that was made from no mesh is its own full resolution.
-        Err(_) if scene.meta().origin[FILE].is_null() => {}
+        Err(_) if [Meta::FILE, Meta::FILE_AT_REST].iter().all(|&file| scene.meta().origin[file].is_null()) => {}
         Err(why) => remark(&format!("note: {without}: {why:#}"))?,
     }
     Ok(scene)
@@ -104,9 +106,15 @@ pub fn with_input_if_found(scene: Scene, path: &Path, args: &InputArgs, without:
 /// # Errors
 /// As [`with_input`].
 pub fn mesh_of(scene: &Scene, path: &Path, args: &InputArgs) -> anyhow::Result<Scene> {
-    let record = &scene.meta().origin[FILE];
+    let record = &scene.meta().origin[Meta::FILE];
+    if let Some(at_rest) = scene.meta().origin[Meta::FILE_AT_REST]["name"].as_str() {
+        anyhow::bail!("{}: its vertices were moved (refit), and {at_rest}, which it was built from, shows them at rest", path.display());
+    }
     anyhow::ensure!(!record.is_null(), "{}: was not built from a mesh file, or by an older lodray", path.display());
     let file = InputFile::deserialize(record).with_context(|| format!("{}: origin", path.display()))?;
+    if let Some(missing) = args.mesh.iter().find(|mesh| !mesh.is_file()) {
+        anyhow::bail!("--mesh {}: there is no such file", missing.display());
+    }
     let found = file.find(path, &args.mesh).with_context(|| {
         let place =
             if args.mesh.is_empty() { "neither beside it nor in the current folder; name it with --mesh" } else { "none of --mesh" };

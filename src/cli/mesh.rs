@@ -54,7 +54,7 @@ impl<'a> Source<'a> {
 }
 
 impl MeshArgs {
-    /// The mesh. One line for each thing that was lost or changed when it was read, and one for seams that could be closed; the first is an error if `strict`.
+    /// The mesh. One line for each thing that was lost or changed when it was read, and one for seams that could be closed; the first is an error if `strict`, but for triangles without area.
     pub fn read(&self, source: &Source, strict: bool) -> anyhow::Result<TriangleMesh> {
         let mesh = busy("reading", || match self.format {
             Some(format) if source.is_stdin => read_stdin(format, source.path),
@@ -68,8 +68,9 @@ impl MeshArgs {
         let seams = mesh
             .seams()
             .map(|seams| format!("{} of its {} open edges are seams: --weld {:e} closes them", seams.closed, seams.open, seams.distance));
+        let flat = mesh.report.flat();
         for lost in mesh.warnings.iter().chain(&seams) {
-            source.lost(lost, strict)?;
+            source.lost(lost, strict && flat.as_ref() != Some(lost))?;
         }
         Ok(mesh)
     }

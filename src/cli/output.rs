@@ -73,7 +73,22 @@ pub fn explain(command: &str) -> anyhow::Result<()> {
 /// What a TOML reader complains of, in one line: its error is several, with a picture of the place; the first and the last of it say all.
 pub fn toml_in_one_line(file: &str, error: &toml::de::Error) -> anyhow::Error {
     let picture = error.to_string();
-    anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), brief(error.message()))
+    anyhow::anyhow!("{file}: {}: {}", picture.lines().next().unwrap_or_default(), brief(&in_plain_words(error.message())))
+}
+
+/// A message of the reader of TOML, with what numbers may be in place of Rust's names for them.
+pub fn in_plain_words(message: &str) -> String {
+    let most = |name| match name {
+        "u16" => Some(u64::from(u16::MAX)),
+        "u32" => Some(u64::from(u32::MAX)),
+        "u64" | "usize" => Some(u64::MAX),
+        _ => None,
+    };
+    match message.rsplit_once("expected ") {
+        Some((start, name)) if let Some(most) = most(name) => format!("{start}expected a whole number from 0 to {most}"),
+        Some((start, "f32" | "f64")) => format!("{start}expected a number"),
+        _ => message.to_owned(),
+    }
 }
 
 /// Most bytes of a word, and of an error, that quotes a file.
@@ -93,6 +108,13 @@ pub fn brief(text: &str) -> String {
 pub fn warn(text: &str) {
     let (label, rest) = text.split_once(' ').unwrap_or((text, ""));
     complain(label, rest);
+}
+
+/// The text of a file; the error names it.
+pub fn read_text(path: &Path) -> anyhow::Result<String> {
+    let of = || format!("cannot read {}", path.display());
+    let bytes = std::fs::read(path).with_context(of)?;
+    String::from_utf8(bytes).map_err(|_| anyhow::anyhow!("it is no text").context(of()))
 }
 
 /// Writes a whole file; the error names it.
@@ -128,6 +150,7 @@ pub fn open_any(path: &Path) -> anyhow::Result<Scene> {
 pub fn check_target(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     let shown = path.display();
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    anyhow::ensure!(path != Path::new("-"), "cannot write {shown}: what is written here is a file, and ./- is one of that name");
     anyhow::ensure!(!path.is_dir(), "cannot write {shown}: it is a folder");
     anyhow::ensure!(parent.is_dir(), "cannot write {shown}: folder {} does not exist", parent.display());
     // Renaming a file to the name of a device would take the device away.

@@ -8,7 +8,7 @@ use super::numbering::Numbering;
 use super::scene::Image;
 use super::sections::{COUNT, FileSection, place};
 use super::shading::SmoothShading;
-use super::{Box16, Line, Scene, SceneError, tree_boxes};
+use super::{Box16, Line, Meta, Scene, SceneError, tree_boxes};
 use crate::mesh::{Hierarchy, SharedEdges, SurfaceError, first_not_finite, grid_holds, lattice, move_vertices};
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -121,6 +121,17 @@ pub struct Refit {
     refit_nodes: RefitNodes,
 }
 
+/// The mesh file that a scene was built from shows it at rest ([`Meta::FILE_AT_REST`]), and how far the two were apart says nothing of the vertices where they are now.
+fn move_origin(origin: &mut serde_json::Value) {
+    let Some(origin) = origin.as_object_mut() else { return };
+    if let Some(file) = origin.remove(Meta::FILE) {
+        origin.insert(Meta::FILE_AT_REST.into(), file);
+    }
+    if let Some(remesh) = origin.get_mut("remesh").and_then(|remesh| remesh.as_object_mut()) {
+        remesh.remove("distance");
+    }
+}
+
 impl Refit {
     /// Gets a scene ready.
     ///
@@ -203,6 +214,7 @@ impl Refit {
         (meta.placement, meta.bound_offset) = (h.placement, h.bounds.scale.offset.get() as u32); // 9 bits
         (meta.lo, meta.hi, meta.moved) = (lo, hi, moved);
         meta.program = env!("CARGO_PKG_VERSION").into();
+        move_origin(&mut meta.origin);
         let json = serde_json::to_vec(&meta).map_err(|e| SceneError::Build(format!("META: {e}")))?;
         let lengths = FileSection::ALL.map(|section| match section {
             FileSection::Meta => json.len(),

@@ -102,6 +102,11 @@ fn is_false(v: &bool) -> bool {
 }
 
 impl Meta {
+    /// Where `origin` records the mesh file that a scene was built from.
+    pub const FILE: &str = "file";
+    /// The same of a scene whose vertices were moved since: the file shows them at rest.
+    pub const FILE_AT_REST: &str = "file_at_rest";
+
     /// No levels were taken away: any ray may be traced. Otherwise those of `job` and `regions` alone.
     pub fn is_whole(&self) -> bool {
         self.job.is_empty() && self.regions.is_empty()

@@ -59,6 +59,22 @@ pub struct CleanReport {
     pub turned_triangles: usize,
 }
 
+impl CleanReport {
+    /// A line on triangles without area, if there were any: without them nothing of the surface is lost.
+    pub fn flat(&self) -> Option<String> {
+        self.dropped(self.degenerate_triangles, "have no area")
+    }
+
+    /// A line on triangles with the corners of another, if there were any.
+    pub fn repeated(&self) -> Option<String> {
+        self.dropped(self.duplicate_triangles, "have the corners of another")
+    }
+
+    fn dropped(&self, count: usize, what: &str) -> Option<String> {
+        (count > 0).then(|| format!("{count} of its {} triangles {what}, and are dropped", self.triangles_read))
+    }
+}
+
 /// Most meshes need no line on it.
 fn is_zero(count: &usize) -> bool {
     *count == 0

@@ -38,7 +38,7 @@ pub use normals::{DEFAULT_CREASE_ANGLE, corner_normals};
 pub use parts::parts;
 pub use quantise::{SurfaceError, first_not_finite, grid_holds, most_zeros, move_vertices, quantise};
 pub use read::{
-    ArrayError, MESH_ENDINGS, MeshCamera, MeshFormat, MeshPlace, MovingMesh, PlacedMeshes, PositionFrames, ReadError, named_files,
+    ArrayError, MESH_ENDINGS, MeshCamera, MeshFormat, MeshPlace, MovingMesh, PlacedMeshes, PositionFrames, ReadError, floats, named_files,
     open_array, read, read_as, read_bytes, read_placed, read_placed_bytes, read_positions, shape_and_type,
 };
 pub use remesh::{DEFAULT_MAX_ERROR, Folds, RemeshError, RemeshOptions, RemeshReport, Works, remesh};

@@ -14,7 +14,7 @@
 use super::eye::{eye_of_all, least_radius_of_all};
 use super::rows::{BATCH, query};
 use super::{Eye, ModelSpace, Query, RaySource};
-use crate::mesh::{ArrayError, open_array, shape_and_type};
+use crate::mesh::{ArrayError, floats, open_array, shape_and_type};
 use npyz::{DType, Order, TypeChar};
 use rayon::prelude::*;
 use std::fs::File;
@@ -84,10 +84,7 @@ impl RayFile {
         if columns == 12 && size == 4 && rows > 1 << 24 {
             return Err(Why::Numbers(rows));
         }
-        let values: Vec<f64> = match size {
-            4 => file.into_vec::<f32>().map_err(Why::Io)?.into_iter().map(f64::from).collect(),
-            _ => file.into_vec().map_err(Why::Io)?,
-        };
+        let values = floats(file, size)?;
         let rows = rows as usize; // at most MOST
         let value = |row: usize, column: usize| match order {
             Order::C => values[row * columns + column],

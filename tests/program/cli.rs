@@ -507,6 +507,7 @@ fn the_plan_of_a_view_prunes() {
     desk.run("generate terrain --levels 4 --base 32 -o a.lod");
     let said = desk.run("plan a.lod --distance 8,16 --size 64x64 -o plan.toml");
     assert!(said.starts_with("a unit for this has ") && said.lines().next().unwrap().contains(" GE (gate equivalents): "), "{said}");
+    assert!(said.contains(" % less\nthan the unit of rtl/, with 4 contexts\n"), "{said}");
     assert!(desk.run("prune a.lod --plan plan.toml -o small.lod").starts_with("2 views; "));
     assert!(fs::metadata(desk.path("small.lod")).unwrap().len() < fs::metadata(desk.path("a.lod")).unwrap().len());
     // The same as a list of jobs says.
@@ -534,6 +535,14 @@ fn what_a_base_loses_is_said_and_refused_if_strict() {
     assert!(code == 1 && text.starts_with("error: sheet.obj: it is up to ") && !desk.path("strict.lod").exists(), "{text}");
     desk.run("build sheet.obj -o strict.lod --levels 3 --strict");
     assert!(!desk.run("info strict.lod").contains("warning"));
+    // A triangle without area has a line, but is no loss; one that is there twice is.
+    let sheet = desk.text("sheet.obj");
+    let again = sheet.lines().find(|line| line.starts_with("f ")).unwrap();
+    for (face, strict, said) in [("f 1 1 2", 0, "have no area"), (again, 1, "have the corners of another")] {
+        desk.write("more.obj", &format!("{sheet}{face}\n"));
+        let (code, text) = desk.hear("build more.obj -o more.lod --levels 3 --strict");
+        assert!(code == strict && text.contains(said), "{text}");
+    }
 }
 
 #[test]

@@ -25,6 +25,25 @@ fn write_array(desk: &Desk, name: &str, shape: &[u64], values: &[f64]) {
 }
 
 #[test]
+fn a_scene_that_moved_says_nothing_of_distances_to_its_mesh() {
+    let desk = desk();
+    desk.run("generate spikes --levels 1 --base 32 -o a.lod --quiet");
+    desk.run("export a.lod -o a.obj --quiet");
+    assert!(desk.run("build a.obj -o b.lod --levels 1").contains("\naccuracy "));
+    let moved = desk.run("refit b.lod --motion wave --time 0.25 -o moved.lod");
+    assert!(moved.contains(" of a.obj; vertices were moved since (refit)") && !moved.contains("accuracy"), "{moved}");
+    let all = desk.json("info moved.lod");
+    assert!(all.get("distance").is_none_or(serde_json::Value::is_null), "{all}");
+    assert_eq!(all["origin"]["file_at_rest"]["name"], "a.obj");
+    // The mesh is another surface now.
+    desk.run("simulate b.lod --method input-bvh --size 8x8");
+    desk.refused("simulate moved.lod --method input-bvh --size 8x8", FAILS, &["its vertices were moved (refit), and a.obj"]);
+    desk.refused("simulate b.lod --method input-bvh --size 8x8 --mesh c.obj", FAILS, &["--mesh c.obj: there is no such file"]);
+    let (code, said) = desk.hear("simulate b.lod --size 8x8 --mesh a.obj");
+    assert!(code == 0 && said.contains("note: --mesh is not used"), "{said}");
+}
+
+#[test]
 fn arrays_meshes_and_sequences_move_a_scene() {
     let desk = desk();
     desk.run("generate sphere --levels 3 --base 32 -o a.lod --quiet");

@@ -3,7 +3,7 @@
 use lodray_test_support::program::{Desk, FAILS, USAGE};
 use serde_json::Value;
 
-/// A bumpy sphere of 2,048 triangles.
+/// A bumpy sphere of 2,016 triangles.
 fn mesh(bump: f64) -> String {
     let (columns, rows) = (32, 32);
     let mut text = String::new();
@@ -18,7 +18,10 @@ fn mesh(bump: f64) -> String {
     let at = |row: i32, column: i32| row * columns + column % columns + 1;
     for row in 0..rows {
         for column in 0..columns {
-            text += &format!("f {} {} {}\n", at(row, column), at(row, column + 1), at(row + 1, column));
+            // At the first pole it has no area; the sine at the other is not 0.
+            if row > 0 {
+                text += &format!("f {} {} {}\n", at(row, column), at(row, column + 1), at(row + 1, column));
+            }
             text += &format!("f {} {} {}\n", at(row, column + 1), at(row + 1, column + 1), at(row + 1, column));
         }
     }

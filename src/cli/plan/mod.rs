@@ -3,7 +3,7 @@
 mod speed;
 
 use super::args::{Size, radii};
-use super::output::{busy, check_target, open, print_json, print_line, print_table, remark, write_file};
+use super::output::{busy, check_target, open, print_json, print_line, print_table, read_text, remark, write_file};
 use super::sweep::{ListText, open_scene, read_jobs};
 use super::unit::{UnitFacts, gates};
 use anyhow::Context;
@@ -39,7 +39,7 @@ pub struct Args {
     #[arg(long, value_name = "PIXELS", requires = "job", conflicts_with = "check", value_parser = pixels, allow_negative_numbers = true)]
     within: Option<f64>,
     /// Show this plan, or write its --package, instead of making one
-    #[arg(long, value_name = "PLAN", conflicts_with_all = ["scenes", "job", "check", "out", "speed"])]
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["scenes", "job", "check", "out", "speed", "distance", "size", "delta", "within", "share", "machine", "set", "speed_size"])]
     plan: Option<PathBuf>,
     /// Write the plan (TOML) to this file
     #[arg(short, long)]
@@ -118,13 +118,16 @@ fn seen(args: &Args) -> anyhow::Result<Jobs> {
     })
 }
 
-/// What all of a plan saves, in one line.
+/// What all of a plan saves, and of which unit.
 fn total(plan: &Plan) -> String {
-    let full = gates(&plan.speed.as_ref().map_or(Hardware::default(), |speed| speed.own.config()));
-    let own = gates(&plan.hardware(&Hardware::default()));
+    let (whose, full) = match &plan.speed {
+        Some(speed) => (speed.machine.clone(), speed.own.config()),
+        None => (format!("rtl/, with {} contexts", Hardware::default().contexts), Hardware::default()),
+    };
+    let (own, full) = (gates(&plan.hardware(&Hardware::default())), gates(&full));
     let less = 100.0 * (1.0 - own / full);
     format!(
-        "a unit for this has {} of {} GE (gate equivalents): {less:.1} % less",
+        "a unit for this has {} of {} GE (gate equivalents): {less:.1} % less\nthan the unit of {whose}",
         grouped(own.round() as u64),
         grouped(full.round() as u64)
     )
@@ -175,7 +178,7 @@ pub fn check(plan: &Plan, path: &Path, scene: &Scene, rays: &dyn RaySource, delt
 
 /// A plan from its file.
 pub fn read(path: &Path) -> anyhow::Result<Plan> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = read_text(path)?;
     let plan: Plan = ListText { path, text: &text }.parse()?;
     plan.possible().with_context(|| path.display().to_string())?;
     Ok(plan)

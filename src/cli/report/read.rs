@@ -2,7 +2,7 @@
 
 use crate::cli::bars::Bars;
 use crate::cli::folder::{Input, Record};
-use crate::cli::output::{busy, remark};
+use crate::cli::output::{busy, read_text, remark};
 use anyhow::{Context, ensure};
 use lodray::report::error_time::{ErrorTime, KIND};
 use lodray::report::page::{DocumentFacts, Documents, PICTURE_BYTES, RunInput, embed, ledger};
@@ -48,7 +48,7 @@ pub fn documents(paths: &[&Path]) -> anyhow::Result<Documents> {
 /// Adds what a file holds; `files` are those of the pictures.
 fn add(all: &mut Documents, files: &mut Vec<PathBuf>, path: &Path) -> anyhow::Result<()> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {shown}"))?;
+    let text = read_text(path)?;
     let kind = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
         let tables = ledger(&text);
         ensure!(!tables.is_empty(), "{shown}: there is no table in it");

@@ -7,8 +7,7 @@ use crate::cli::form::FormArgs;
 use crate::cli::generate;
 use crate::cli::machines::{is_path, machine, machine_files};
 use crate::cli::method::{Listed, machine_methods};
-use crate::cli::output::open_any;
-use anyhow::Context;
+use crate::cli::output::{open_any, read_text};
 use clap::Args as _;
 use lodray::format::Scene;
 use lodray::mesh::{BoundKind, Placement, procedural};
@@ -35,7 +34,7 @@ const MOST_MACHINES: usize = 1 << 14;
 
 /// Reads and checks a list; every error names the file.
 pub fn read_jobs(path: &Path) -> anyhow::Result<Jobs> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = read_text(path)?;
     jobs(&ListText { path, text: &text })
 }
 
@@ -143,7 +142,7 @@ fn knobs(source: &ListText<'_>, list: &List) -> anyhow::Result<Knobs> {
     for (name, value) in &list.knobs {
         let own: Vec<&Knob> =
             machine_methods().flat_map(|method| method.knobs.iter().copied()).filter(|knob| list_key(knob).is_none()).collect();
-        let names = || own.iter().map(|knob| knob.name).collect::<Vec<_>>().join(", ");
+        let names = || own.iter().map(|knob| knob.name).collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ");
         let wrong = |what: String| source.wrong(value.span(), format!("knobs: {what}"));
         let knob = own.iter().find(|knob| knob.name == name).ok_or_else(|| wrong(format!("there is no {name}; there are: {}", names())))?;
         knobs.set(knob, &value.get_ref().to_string()).map_err(|why| wrong(why.to_string()))?;

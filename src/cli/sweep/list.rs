@@ -1,7 +1,7 @@
 //! The list of jobs as it stands in its file; every value knows where.
 
 use crate::cli::method::Listed;
-use crate::cli::output::brief;
+use crate::cli::output::{brief, in_plain_words};
 use lodray::mesh::{BoundKind, procedural};
 use lodray::num::VertexForm;
 use lodray::run::Compute;
@@ -142,7 +142,7 @@ impl ListText<'_> {
         toml::from_str(self.text).map_err(|e| {
             let brackets =
                 if e.message() == "invalid type: map, expected a sequence" { "; [[scene]] and [[machine]] have two brackets" } else { "" };
-            let message = with_limits(&e.message().lines().collect::<Vec<_>>().join(", "));
+            let message = in_plain_words(&e.message().lines().collect::<Vec<_>>().join(", "));
             self.wrong(e.span().unwrap_or(0..0), format!("{message}{brackets}"))
         })
     }
@@ -152,11 +152,4 @@ impl ListText<'_> {
         let line = self.text.as_bytes().iter().take(place.start).filter(|&&byte| byte == b'\n').count() + 1;
         anyhow::anyhow!("{}: line {line}: {}", self.path.display(), brief(&what.to_string()))
     }
-}
-
-/// The reader's message with the limits of whole numbers in place of Rust's names for them.
-fn with_limits(message: &str) -> String {
-    let limits = [("u32", u64::from(u32::MAX)), ("u64", u64::MAX)];
-    let found = limits.iter().find_map(|(name, most)| Some((message.strip_suffix(&format!("expected {name}"))?, most)));
-    found.map_or_else(|| message.to_owned(), |(start, most)| format!("{start}expected a whole number from 0 to {most}"))
 }

@@ -25,6 +25,9 @@ pub enum ArrayError {
     /// Its header has brackets within brackets without end.
     #[error("no array of NumPy's: its header has more than {MOST_BRACKETS} brackets within each other")]
     Brackets,
+    /// It ends before its last value.
+    #[error("the file ends within its values")]
+    Short,
     /// The sizes of its shape have no product.
     #[error("an array of a shape that cannot be")]
     Shape,
@@ -59,6 +62,18 @@ pub fn open_array<R: Read>(mut bytes: R) -> Result<NpyFile<impl Read>, ArrayErro
         let what = error.to_string();
         ArrayError::Io(io::Error::new(error.kind(), format!("no array of NumPy's: {}", shown(what.lines().next().unwrap_or_default()))))
     })
+}
+
+/// The values of an array of floats of `size` bytes, 4 or 8, in its order.
+///
+/// # Errors
+/// There are fewer than its shape says, or they cannot be read.
+pub fn floats<R: Read>(array: NpyFile<R>, size: u64) -> Result<Vec<f64>, ArrayError> {
+    let values = match size {
+        4 => array.into_vec::<f32>().map(|values| values.into_iter().map(f64::from).collect()),
+        _ => array.into_vec(),
+    };
+    values.map_err(|error| if error.kind() == io::ErrorKind::UnexpectedEof { ArrayError::Short } else { ArrayError::Io(error) })
 }
 
 /// Shape and type of an array, for errors.

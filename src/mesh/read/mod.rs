@@ -17,7 +17,7 @@ mod stl;
 use super::clean::{Attributes, MeshError, TriangleMesh};
 pub use camera::MeshCamera;
 use fault::{Fault, fault, shown};
-pub use header::{ArrayError, open_array, shape_and_type};
+pub use header::{ArrayError, floats, open_array, shape_and_type};
 pub use moving::MovingMesh;
 use parts::Parts;
 pub use placed::{MeshPlace, PlacedMeshes, read_placed, read_placed_bytes};
@@ -181,6 +181,7 @@ pub fn read_bytes(bytes: &[u8], format: MeshFormat, name: &Path, folder: &Path) 
     let mut mesh = TriangleMesh::with_attributes(&parts.positions, &parts.triangles, attributes, &parts.materials, parts.colours)
         .map_err(|source| ReadError::Mesh { path: name.into(), source })?;
     mesh.warnings = parts.warnings;
+    mesh.warnings.extend(mesh.report.flat().into_iter().chain(mesh.report.repeated()));
     mesh.orient();
     Ok(mesh)
 }

@@ -11,12 +11,14 @@ const NO_MATERIAL: [f32; 3] = [0.8; 3];
 
 /// What a face's corner may name, in the order of its indices.
 const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+/// What is drawn and no face: points, lines, curves and surfaces.
+const OTHERS: [&str; 5] = ["p", "l", "curv", "curv2", "surf"];
 const VERTEX: usize = 0;
 const TEXTURE: usize = 1;
 const NORMAL: usize = 2;
 
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
-    let (text, lost_normals) = Checker::default().check(bytes)?;
+    let Checked { text, lost_normals, others } = Checker::default().check(bytes)?;
     let warnings = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     let library = |name: &Path| {
@@ -46,6 +48,9 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     let mut parts = Parts { warnings: warnings.take(), ..Parts::default() };
     if lost_normals > 0 {
         parts.warnings.push(format!("{lost_normals} of its normals (vn) are not finite: corners that name them have none"));
+    }
+    if others > 0 {
+        parts.warnings.push(format!("{others} of its lines begin with {}: only faces (f) are kept", OTHERS.join(", ")));
     }
     let materials = materials.unwrap_or_default();
     if materials.len() >= usize::from(u16::MAX) {
@@ -111,15 +116,23 @@ struct Checker {
     /// Positions, texture coordinates and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
-    /// Normals that are not finite.
+    /// Normals that are not finite, and lines of [`OTHERS`].
     lost_normals: usize,
+    others: usize,
     /// The largest index ahead of its vertex so far, and its line: legal as long as the vertex comes before the object ends.
     ahead: [(i64, usize); 3],
 }
 
+/// The lines that `tobj` reads, and what is lost.
+struct Checked {
+    text: String,
+    lost_normals: usize,
+    others: usize,
+}
+
 impl Checker {
-    /// The lines, and how many normals are not finite.
-    fn check(mut self, bytes: &[u8]) -> Result<(String, usize), Fault> {
+    /// The lines, and what is lost.
+    fn check(mut self, bytes: &[u8]) -> Result<Checked, Fault> {
         if let Some(at) = bytes.iter().position(|&b| b == 0) {
             let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
             return fault(format_args!("line {line}"), "this is not text");
@@ -139,7 +152,9 @@ impl Checker {
         for (line, number) in text.lines().zip(1usize..) {
             last = number;
             let at = |what| Fault { place: format!("line {number}"), what };
-            if let Some(begun) = line.trim_end().strip_suffix('\\') {
+            // A comment ends with its line, whatever it ends in: names of folders do in back-slashes.
+            let is_comment = joined.is_empty() && line.trim_start().starts_with('#');
+            if let Some(begun) = line.trim_end().strip_suffix('\\').filter(|_| !is_comment) {
                 joined.push_str(begun);
                 joined.push(' ');
                 continue;
@@ -161,7 +176,7 @@ impl Checker {
                 return fault(format_args!("line {line}"), what);
             }
         }
-        Ok((self.out, self.lost_normals))
+        Ok(Checked { text: self.out, lost_normals: self.lost_normals, others: self.others })
     }
 
     fn line(&mut self, line: &str, number: usize) -> Result<(), String> {
@@ -184,7 +199,10 @@ impl Checker {
                 }
                 Ok(())
             }
-            _ => Ok(()),
+            _ => {
+                self.others += usize::from(OTHERS.contains(&key));
+                Ok(())
+            }
         }
     }
 

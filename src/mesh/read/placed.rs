@@ -47,6 +47,9 @@ pub fn read_placed(path: &Path) -> Result<PlacedMeshes, ReadError> {
 /// As for [`read_placed`].
 pub fn read_placed_bytes(bytes: &[u8], name: &Path, folder: &Path) -> Result<PlacedMeshes, ReadError> {
     let content = |Fault { place, what }| ReadError::Content { path: name.into(), place, what };
+    if bytes.is_empty() {
+        return Err(content(Fault { place: "line 1".into(), what: "the file is empty".into() }));
+    }
     let parts = parse_placed(bytes, folder).map_err(content)?;
     let mut meshes = Vec::new();
     for (own, parts) in parts.meshes {
@@ -54,6 +57,7 @@ pub fn read_placed_bytes(bytes: &[u8], name: &Path, folder: &Path) -> Result<Pla
         let mut mesh = TriangleMesh::with_attributes(&parts.positions, &parts.triangles, attributes, &parts.materials, parts.colours)
             .map_err(|source| ReadError::Content { path: name.into(), place: shown(&own), what: source.to_string() })?;
         mesh.warnings = parts.warnings;
+        mesh.warnings.extend(mesh.report.flat().into_iter().chain(mesh.report.repeated()));
         mesh.orient();
         meshes.push((own, mesh));
     }

@@ -1,6 +1,6 @@
 //! Positions of vertices alone, in the order of a file: for meshes of which everything else is known.
 
-use super::header::{open_array, shape_and_type};
+use super::header::{floats, open_array, shape_and_type};
 use super::{MeshFormat, ReadError, is_device, ply};
 use npyz::{DType, Order, TypeChar};
 use std::io::Error;
@@ -59,10 +59,7 @@ fn array(bytes: &[u8]) -> Result<PositionFrames, String> {
             shape_and_type(&file)
         ));
     }
-    let values: Vec<f64> = match size {
-        4 => file.into_vec::<f32>().map_err(|error| error.to_string())?.into_iter().map(f64::from).collect(),
-        _ => file.into_vec().map_err(|error| error.to_string())?,
-    };
+    let values = floats(file, size).map_err(|error| error.to_string())?;
     // As many as the shape says: the reader has seen to it.
     Ok(PositionFrames { positions: values.as_chunks::<3>().0.to_vec(), vertices: vertices as usize, is_sequence })
 }

@@ -3,7 +3,7 @@
 use crate::format::Scene;
 use crate::machine::Machine;
 use crate::mesh::BoundKind;
-use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
+use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE, LeafLayout};
 use crate::method::knob::DELTA;
 use crate::method::{Knobs, Registered};
 use crate::rays::Camera;
@@ -162,6 +162,15 @@ pub struct MethodFacts {
     pub bytes: u64,
 }
 
+/// A layout, and the most triangles that its leaves have where `size` is asked for.
+fn leaves_of(layout: &str, size: &str) -> String {
+    let most = LeafLayout::named(layout).map(LeafLayout::most_triangles);
+    match (most, size.parse::<u32>()) {
+        (Some(most), Ok(size)) => format!("{layout} {}", size.min(most)),
+        _ => format!("{layout} {size}"),
+    }
+}
+
 impl MethodFacts {
     /// A method with its knobs, what it chose for the frame, and the size of its memory.
     pub fn new(method: &Registered, knobs: &Knobs, choices: &[(&'static str, String)], bytes: u64) -> Self {
@@ -169,7 +178,7 @@ impl MethodFacts {
         Self {
             name: method.name.to_owned(),
             delta: method.has(DELTA.name).then(|| knobs.delta()),
-            leaves: if let [Some(layout), Some(size)] = leaves { Some(format!("{layout} {size}")) } else { None },
+            leaves: if let [Some(layout), Some(size)] = leaves { Some(leaves_of(layout, size)) } else { None },
             knobs: method.knobs.iter().filter_map(|knob| Some((knob.name.to_owned(), knobs.get(knob)?.to_owned()))).collect(),
             choices: choices.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
             bytes,

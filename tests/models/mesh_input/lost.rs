@@ -47,6 +47,39 @@ fn columns_that_nobody_reads_refuse_nothing() {
 }
 
 #[test]
+fn what_is_no_triangle_has_a_line() {
+    let files = Files::new();
+    let read = |text: &str| files.read("a.obj", format!("{TETRAHEDRON}{text}"));
+    for (text, count) in [("l 1 2\n", 1), ("p 1\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3 4\n", 3)] {
+        assert!(line(&read(text)).starts_with(&format!("{count} of its lines begin with p, l, curv, curv2, surf")), "{text}");
+    }
+    assert_eq!(line(&read("f 1 1 2\n")), "1 of its 5 triangles have no area, and are dropped");
+    let all = read("f 1 1 2\nf 2 2 3\nf 2 1 3\n");
+    let said = ["2 of its 7 triangles have no area, and are dropped", "1 of its 7 triangles have the corners of another, and are dropped"];
+    assert_eq!(all.warnings, said);
+    assert_eq!(all.triangles.len(), 4);
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let rest = "element face 1\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n7\n";
+    assert_eq!(line(&files.read("a.ply", format!("{header}{rest}"))), "its element edge is not kept");
+    let mut glb = square();
+    let mut points = glb.json["meshes"][0]["primitives"][0].clone();
+    points["mode"] = json!(0);
+    glb.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(points);
+    assert_eq!(line(&glb.mesh()), "1 of its primitives are points or lines: only triangles are kept");
+}
+
+#[test]
+fn a_comment_ends_with_its_line() {
+    let files = Files::new();
+    let with = |comment: &str| files.read("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n{comment}\nf 2 4 3\n"));
+    for comment in ["# a", "# exported from C:\\models\\", "  #\\"] {
+        assert_eq!(with(comment).triangles.len(), 2, "{comment}");
+    }
+    // Other lines go on.
+    assert_eq!(files.read("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n").triangles.len(), 1);
+}
+
+#[test]
 fn morph_targets_are_applied_with_their_default_weights() {
     let mut glb = square();
     glb.json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 0}]);

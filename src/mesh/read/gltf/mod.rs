@@ -142,6 +142,8 @@ struct Builder<'a> {
     parts: Parts,
     has_normals: bool,
     has_texture: bool,
+    /// Primitives of points and lines.
+    others: usize,
 }
 
 impl<'a> Builder<'a> {
@@ -153,7 +155,7 @@ impl<'a> Builder<'a> {
             let own = root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
             parts.colours = own.chain([NO_MATERIAL]).collect();
         }
-        Self { root, reader, parts, has_normals: false, has_texture: false }
+        Self { root, reader, parts, has_normals: false, has_texture: false, others: 0 }
     }
 
     /// Adds a mesh where it is placed.
@@ -176,11 +178,15 @@ impl<'a> Builder<'a> {
         if !self.has_texture {
             self.parts.texture = Vec::new();
         }
+        if self.others > 0 {
+            self.parts.warnings.push(format!("{} of its primitives are points or lines: only triangles are kept", self.others));
+        }
         self.parts
     }
 
     fn primitive(&mut self, primitive: &Primitive, weights: Option<&[f32]>, placed: &Placed, place: &str) -> Result<(), Fault> {
         if !is_triangles(primitive) {
+            self.others += 1;
             return Ok(());
         }
         let Checked::Valid(mode) = primitive.mode else { return fault(place, "its mode is not known") };

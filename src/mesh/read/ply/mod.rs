@@ -167,6 +167,8 @@ pub(super) fn parse(bytes: &[u8], _directory: &Path) -> Result<Parts, Fault> {
     if parts.triangles.is_empty() {
         return fault("element face", "there are no faces");
     }
+    let others = header.elements.values().filter(|e| !matches!(e.name.as_str(), "vertex" | "face" | "tristrips") && e.count > 0);
+    parts.warnings.extend(others.map(|e| format!("its element {} is not kept", shown(&e.name))));
     if has_normals {
         parts.normals = parts.triangles.iter().map(|t| t.map(|v| normals[v as usize])).collect();
     }
