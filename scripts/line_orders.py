@@ -26,13 +26,14 @@ def main():
     parser.add_argument("--knob", default="line-layout", help="option of simulate that is varied (default line-layout)")
     parser.add_argument("--orders", default=",".join(ORDERS), help="its values, the first being what others are measured by")
     parser.add_argument("--compute", default="free", help="how compute is simulated: free, cores or units (default free)")
-    parser.add_argument("--delta", default="1", help="quality (default 1); with inf nothing is morphed")
+    parser.add_argument("--delta", help="quality (default 1), of methods that have one; with inf nothing is morphed")
     parser.add_argument("--scene", action="append", default=[], help="scene file, seen from 1.5, 4 and 16 radii; may be repeated")
     args = parser.parse_args()
     program, orders = args.program, args.orders.split(",")
 
     def simulate(scene, distance, order):
-        command = [program, "simulate", scene, "--machine", "haydel2023", "--compute", args.compute, "--distance", distance, "--delta", args.delta]
+        command = [program, "simulate", scene, "--machine", "haydel2023", "--compute", args.compute, "--distance", distance]
+        command += ["--delta", args.delta] if args.delta else []
         command += ["--method", args.method, "--size", args.size, f"--{args.knob}", order, "--json"]
         result = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         return [result["cycles"], result["energy"]["total"], result["dram"]["reads"]]

@@ -20,7 +20,7 @@ lodray.HIT, the type of hits, has these (96 bytes); of a ray that meets nothing 
 
     t                                     float64: distance from the origin (inf)
     tree, level, node                     int32: the triangle that was met, a node of a level of a base triangle (-1)
-    triangle                              int64: the finest triangle there, a face of Scene.export (-1)
+    triangle                              int64: the finest triangle there, a face of Scene.mesh() (-1)
     barycentrics, finest_barycentrics     float32 (3): weights of the corners of both (nan)
     point                                 float64 (3): where (nan)
     normal                                float32 (3): shading normal (nan)

@@ -134,7 +134,7 @@ class SceneMethod:
         *,
         what: str = "image",
         samples: int = 1,
-        shading: str = "facets",
+        shading: str | None = None,
         progress: _Progress | None = None,
     ) -> NDArray[Any]: ...
     def simulate(
@@ -188,6 +188,8 @@ class Scene:
     def verify(self) -> dict[str, Any]: ...
     def save(self, path: _Path) -> None: ...
     def export(self, path: _Path, level: int | None = None) -> dict[str, Any]: ...
+    def mesh(self, level: int | None = None) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
+    def refit(self, vertices: ArrayLike, *, normals: str = "smooth", grid: str = "new") -> Scene: ...
     def method(self, name: str = "lod", **knobs: Any) -> SceneMethod: ...
     def cast(
         self,
@@ -260,7 +262,7 @@ class Scene:
         *,
         what: str = "image",
         samples: int = 1,
-        shading: str = "facets",
+        shading: str | None = None,
         method: str = "lod",
         progress: _Progress | None = None,
         **knobs: Any,

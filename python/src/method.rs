@@ -207,21 +207,20 @@ impl PySceneMethod {
     }
 
     /// A picture, or what its rays met. See Scene.render.
-    #[pyo3(signature = (camera=None, *, what="image", samples=1, shading="facets", progress=None))]
+    #[pyo3(signature = (camera=None, *, what="image", samples=1, shading=None, progress=None))]
     pub fn render<'py>(
         &self,
         py: Python<'py>,
         camera: Option<&Bound<'py, PyCamera>>,
         what: &str,
         #[pyo3(from_py_with = whole)] samples: i128,
-        shading: &str,
+        shading: Option<&str>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let samples: u32 = within("samples", samples, 1..=MOST_SAMPLES)?;
         if !PICTURES.contains(&what) {
             return Err(refused(format!("what: '{what}' is none of {}", PICTURES.join(", "))));
         }
-        let shading: Shading = named("shading", shading)?;
         let (method, scene) = (&*self.0, self.0.traced());
         let (space, delta) = (ModelSpace::of(scene), method.knobs().delta());
         let camera = given(camera, &space)?;
@@ -232,6 +231,9 @@ impl PySceneMethod {
             if samples != 1 {
                 return Err(refused("samples: of a pixel of an image; hits are of one ray for each pixel"));
             }
+            if shading.is_some() {
+                return Err(refused("shading: is of an image; hits have the shading normal at full resolution"));
+            }
             let packed = beside(py, progress, |told| {
                 told.say("tracing", 0, Some(camera.batches() as u64));
                 let sight = Sight::new(&camera, &space, delta);
@@ -240,6 +242,7 @@ impl PySceneMethod {
             let packed = packed.map_err(|error| crate::errors::raised_by(&*error))?;
             return hits(py, packed)?.call_method1("reshape", (height, width));
         }
+        let shading = shading.map_or(Ok(Shading::Facets), |shading| named("shading", shading))?;
         check_shading(scene, shading).map_err(raised)?;
         let side = samples.isqrt();
         if side * side != samples {

@@ -9,7 +9,7 @@ use crate::plan::plan;
 use crate::told::{Told, beside};
 use crate::values::{Size, document, named, to_python, triple, whole, whole_or_none, within};
 use lodray::format::audit::audit;
-use lodray::format::{Scene, export_level, write_and_rename};
+use lodray::format::{RefitOptions, Scene, export_level, level_mesh, write_and_rename};
 use lodray::mesh::procedural::{MAX_TREES, MAX_WALLS, Options};
 use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, TriangleMesh, read};
 use lodray::num::MAX_LEVELS;
@@ -54,6 +54,12 @@ impl PyScene {
             self.0.method_with(name, &turned)
         })?;
         Ok(PySceneMethod(Arc::new(made.map_err(raised)?)))
+    }
+
+    /// A level that it has; the finest if none is named.
+    fn level(&self, level: Option<i128>) -> PyResult<u32> {
+        let finest = self.0.levels();
+        level.map_or(Ok(finest), |level| within("level", level, 0..=finest))
     }
 }
 
@@ -249,8 +255,7 @@ impl PyScene {
         path: PathBuf,
         #[pyo3(from_py_with = whole_or_none)] level: Option<i128>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let finest = self.0.levels();
-        let level = level.map_or(Ok(finest), |level| within("level", level, 0..=finest))?;
+        let level = self.level(level)?;
         let counts = beside(py, None, |_| {
             let mut counts = None;
             let written = write_and_rename(&path, |out| {
@@ -260,6 +265,40 @@ impl PyScene {
             written.map(|()| counts).map_err(|error| refused(format!("cannot write {}: {error}", path.display())))
         })??;
         document(py, &counts.map(|counts| json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces })))
+    }
+
+    /// A level, 0 to the finest, which it is if None: (vertices, faces), arrays of float64 of shape (n, 3) and of int64 of shape (m, 3).
+    ///
+    /// They are what `export` writes, in the same order: at the finest level the `triangle` of a hit is a row of faces.
+    ///
+    /// Raises LodrayError: there is no such level.
+    #[pyo3(signature = (level=None))]
+    fn mesh<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = whole_or_none)] level: Option<i128>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let level = self.level(level)?;
+        let mesh = beside(py, None, |_| level_mesh(&self.0, level))?.map_err(raised)?;
+        let faces: Vec<i64> = mesh.faces.as_flattened().iter().map(|&id| id as i64).collect();
+        let vertices = shaped::<f64>(py, mesh.vertices.as_flattened().to_vec(), &[mesh.vertices.len(), 3])?;
+        Ok((vertices, shaped::<i64>(py, faces, &[mesh.faces.len(), 3])?))
+    }
+
+    /// The scene with its vertices elsewhere: a frame of an animation. Its triangles, splits and the tree of its BVH stay.
+    ///
+    /// vertices: where those of the finest level are now, an array of shape (n, 3), in the order of `mesh()`.
+    /// normals: "smooth", made anew, or "keep". grid: where steps of coordinates lie: "new", as for a scene built from these vertices, or
+    /// "keep", so that what does not move keeps its coordinates.
+    ///
+    /// Raises LodrayError: another number of vertices, or one that is not finite.
+    #[pyo3(signature = (vertices, *, normals="smooth", grid="new"))]
+    fn refit(&self, vertices: &Bound<'_, PyAny>, normals: &str, grid: &str) -> PyResult<Self> {
+        let options = RefitOptions { shading: named("normals", normals)?, grid: named("grid", grid)? };
+        let py = vertices.py();
+        let vertices = contiguous("vertices", vertices)?;
+        let positions = triples::<f64>("vertices", &vertices)?;
+        Ok(Self(beside(py, None, |_| self.0.refit(positions, options))?.map_err(raised)?))
     }
 
     /// A way to find hits, to be used many times: lod, bvh and others (`lodray.methods()`), with its knobs as keywords, such as delta=0.5.
@@ -394,11 +433,11 @@ impl PyScene {
     ///
     /// what: "image", an array of uint8 of shape (height, width, 3), sRGB; "hits", an array of lodray.HIT of shape (height, width), whose fields
     /// are distance (t), level, normal and more, pixel by pixel. samples: of a pixel of an image, a square from 1 to 65536; hits have one ray for each pixel.
-    /// shading: of an image, "full", "level", "weighted" or "facets". method, knobs: as for `cast`.
+    /// shading: of an image, "full", "level", "weighted" or "facets", which it is if None. method, knobs: as for `cast`.
     /// Without a camera the picture just holds the whole scene, in 1024 x 1024 pixels.
     ///
     /// Raises LodrayError: an argument that is none of these, too many samples in all, or a camera from where the scene cannot be seen.
-    #[pyo3(signature = (camera=None, *, what="image", samples=1, shading="facets", method="lod", progress=None, **knobs))]
+    #[pyo3(signature = (camera=None, *, what="image", samples=1, shading=None, method="lod", progress=None, **knobs))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn render<'py>(
         &self,
@@ -406,7 +445,7 @@ impl PyScene {
         camera: Option<&Bound<'py, PyCamera>>,
         what: &str,
         #[pyo3(from_py_with = whole)] samples: i128,
-        shading: &str,
+        shading: Option<&str>,
         method: &str,
         progress: Option<&Bound<'py, PyAny>>,
         knobs: Option<&Bound<'py, PyDict>>,

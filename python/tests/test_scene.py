@@ -28,6 +28,40 @@ def test_a_mesh_becomes_a_scene_with_levels(tmp_path: Path) -> None:
     assert sum(line.startswith("f ") for line in lines) == counts["faces"]
 
 
+def test_levels_are_arrays(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=2, base=32)
+    for level in range(3):
+        vertices, faces = scene.mesh(level)
+        assert vertices.dtype == np.float64 and faces.dtype == np.int64
+        # Euler's formula for a closed surface without handles.
+        assert faces.shape == (32 * 4**level, 3) and len(vertices) == len(faces) // 2 + 2
+        scene.export(tmp_path / "level.obj", level)
+        lines = [line.split() for line in (tmp_path / "level.obj").read_text().splitlines()]
+        assert (np.array([line[1:] for line in lines if line[0] == "v"], dtype=float) == vertices).all()
+        assert (np.array([line[1:] for line in lines if line[0] == "f"], dtype=int) == faces + 1).all()
+    # A hit's triangle is one of the finest faces, and its weights are those of its corners.
+    vertices, faces = scene.mesh()
+    hits = scene.cast(scene.camera(size=(16, 16), distance=2.0).rays(), delta="inf")
+    hits = hits[hits["tree"] >= 0]
+    points = np.einsum("hk,hkc->hc", hits["finest_barycentrics"], vertices[faces[hits["triangle"]]])
+    assert len(hits) > 50 and np.abs(points - hits["point"]).max() < 1e-6
+
+
+def test_vertices_move() -> None:
+    scene = lodray.Scene.generate("sphere", levels=2, base=32)
+    vertices, faces = scene.mesh()
+    moved = scene.refit(vertices * [1.0, 2.0, 1.0] + [5.0, 0.0, 0.0])
+    assert moved.verify()["passed"] and (moved.mesh()[1] == faces).all()
+    assert np.abs(moved.mesh()[0] - (vertices * [1.0, 2.0, 1.0] + [5.0, 0.0, 0.0])).max() < 1e-6
+    down = ([5.0, 9.0, 0.01], [0.0, -1.0, 0.0])
+    assert scene.cast(*down)["t"][0] == np.inf and abs(moved.cast(*down)["t"][0] - 7.0) < 0.05
+    # The scene that was moved is another one; normals may stay as they were.
+    assert (scene.mesh()[0] == vertices).all()
+    kept = scene.refit(vertices * [1.0, 2.0, 1.0], normals="keep", grid="keep")
+    across = ([0.3, 0.3, 9.0], [0.0, 0.0, -1.0])
+    assert (kept.cast(*across)["normal"] != moved.refit(kept.mesh()[0]).cast(*across)["normal"]).any()
+
+
 def test_a_file_of_a_mesh_keeps_its_name(tmp_path: Path) -> None:
     lodray.Scene.build(*cube(), own_triangles=True).export(tmp_path / "box.obj")
     scene = lodray.Scene.build(tmp_path / "box.obj", own_triangles=True)
@@ -67,6 +101,11 @@ def test_methods_over_the_mesh_need_it() -> None:
         (lambda: lodray.Scene.exact(np.zeros((3, 3)), [[0, 1, 2]]), "no triangle is left"),
         (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=3), "level: 3 is not from 0 to 1"),
         (lambda: lodray.Scene.generate("sphere", levels=1, base=8).export("x.obj", level=-1), "level: -1 is not from 0 to 1"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).mesh(2), "level: 2 is not from 0 to 1"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).refit(np.zeros((3, 3))), "3 positions, but the finest level of the scene has 18"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).refit(np.full((18, 3), np.nan)), "position 0 is"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).refit(np.zeros((18, 3)), normals="none"), "normals: unknown variant `none`"),
+        (lambda: lodray.Scene.generate("sphere", levels=1, base=8).render(what="hits", shading="full"), "shading: is of an image"),
         (lambda: lodray.Scene.build(*cube(), levels=-1), "levels: -1 is not from 0 to 10"),
         (lambda: lodray.Scene.build(*cube(), levels=2**200), "levels: "),
         (lambda: lodray.Scene.build(*cube(), base=-1), "base: -1"),

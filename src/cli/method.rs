@@ -1,5 +1,6 @@
 //! Options of methods, from the registry: which method, and its knobs.
 
+use clap::parser::ValueSource;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, cluster, find, grid, lod, rlod, stochastic};
@@ -83,12 +84,21 @@ fn augmented(command: Command, method: Arg, methods: impl Iterator<Item = &'stat
     command.arg(method).args(knobs(methods).into_iter().map(knob_arg))
 }
 
-/// The method of this name, and all knobs that were given.
+/// The methods that have a knob, in words.
+fn owners(knob: &Knob) -> String {
+    let names: Vec<_> = METHODS.iter().filter(|method| method.has(knob.name)).map(|method| method.name).collect();
+    format!("{} {} one", names.join(", "), if names.len() == 1 { "has" } else { "have" })
+}
+
+/// The method of this name, and its knobs. Those of other methods are refused where they were given: nobody would see that they do nothing.
 fn chosen(matches: &ArgMatches, name: &str, knobs: Vec<&'static Knob>) -> Result<Chosen, clap::Error> {
     let raw = |why: String| clap::Error::raw(clap::error::ErrorKind::InvalidValue, why);
     let method = find(name).ok_or_else(|| raw(format!("there is no method {name}")))?;
     let mut values = Knobs::default();
     for knob in knobs {
+        if !method.has(knob.name) && matches.value_source(knob.name) == Some(ValueSource::CommandLine) {
+            return Err(raw(format!("--{}: {name} has no such knob; {}", knob.name, owners(knob))));
+        }
         if let Some(value) = matches.get_one::<String>(knob.name) {
             values.set(knob, value).map_err(|why| raw(why.to_string()))?;
         }

@@ -52,6 +52,7 @@ mod unit;
 mod verify;
 mod words;
 
+pub use output::unless_closed;
 pub use terminal::{color, complain, set_color};
 
 use clap::{CommandFactory, Parser, Subcommand};

@@ -46,11 +46,16 @@ pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     print_line(&serde_json::to_string_pretty(value)?)
 }
 
-/// Prints a line; a closed pipe is not an error.
+/// Prints a line.
 pub fn print_line(text: &str) -> anyhow::Result<()> {
-    use std::io::{ErrorKind, Write};
-    match writeln!(std::io::stdout().lock(), "{text}") {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(e).context("cannot write to standard output"),
+    use std::io::Write;
+    unless_closed(writeln!(std::io::stdout().lock(), "{text}"))
+}
+
+/// What printing came to; a closed pipe is not an error.
+pub fn unless_closed(printed: std::io::Result<()>) -> anyhow::Result<()> {
+    match printed {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e).context("cannot write to standard output"),
         _ => Ok(()),
     }
 }

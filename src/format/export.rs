@@ -1,4 +1,4 @@
-//! Any level of a scene as OBJ, welded by topology.
+//! Any level of a scene as a mesh, welded by topology.
 
 use super::Scene;
 use super::numbering::Numbering;
@@ -14,18 +14,64 @@ pub struct ExportCounts {
     pub faces: u64,
 }
 
+/// A level's surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LevelMesh {
+    /// World coordinates.
+    pub vertices: Vec<[f64; 3]>,
+    /// Three vertices each, counter-clockwise from outside.
+    pub faces: Vec<[u64; 3]>,
+}
+
 /// Writes level `level` in world coordinates. Trees share the vertices of their common base vertices and base edges; nothing is welded by position.
 /// Trees follow each other, each its new vertices (in the order of `Numbering`), then its faces in node order.
 ///
 /// # Errors
 /// The scene has no such level ([`io::ErrorKind::InvalidInput`]), or the writer fails.
 pub fn export_level(scene: &Scene, level: u32, writer: impl Write) -> io::Result<ExportCounts> {
+    let mut out = BufWriter::with_capacity(1 << 18, writer);
+    let counts = walk(scene, level, |part| match part {
+        Part::Vertex([x, y, z]) => writeln!(out, "v {x} {y} {z}"),
+        // Counted from 1.
+        Part::Face(face) => {
+            let [a, b, c] = face.map(|id| id + 1);
+            writeln!(out, "f {a} {b} {c}")
+        }
+    })?;
+    out.flush()?;
+    Ok(counts)
+}
+
+/// Level `level` in memory: vertices and faces as [`export_level`] writes them.
+///
+/// # Errors
+/// The scene has no such level ([`io::ErrorKind::InvalidInput`]).
+pub fn level_mesh(scene: &Scene, level: u32) -> io::Result<LevelMesh> {
+    let mut mesh = LevelMesh::default();
+    walk(scene, level, |part| {
+        match part {
+            Part::Vertex(point) => mesh.vertices.push(point),
+            Part::Face(face) => mesh.faces.push(face),
+        }
+        Ok(())
+    })?;
+    Ok(mesh)
+}
+
+/// What a level is made of; vertices are counted from 0.
+enum Part {
+    Vertex([f64; 3]),
+    Face([u64; 3]),
+}
+
+/// Tells `out` the level's vertices and faces in the order in which they are written.
+fn walk(scene: &Scene, level: u32, mut out: impl FnMut(Part) -> io::Result<()>) -> io::Result<ExportCounts> {
     let levels = scene.levels();
     if level > levels {
         let message = format!("level {level} does not exist: the finest is {levels}");
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
-    let mut out = Writer { inner: BufWriter::with_capacity(1 << 18, writer), placement: scene.meta().placement };
+    let placement = scene.meta().placement;
     let (step, len) = (levels - level, lattice::len(levels));
     let mut numbering = Numbering::new(level);
     let mut points = vec![[0; 3]; len];
@@ -34,25 +80,10 @@ pub fn export_level(scene: &Scene, level: u32, writer: impl Write) -> io::Result
     for (tree, &triangle) in scene.triangles().iter().enumerate() {
         scene.decode_points(tree, level, &mut points);
         let at = |p: (u32, u32)| points[lattice::index(levels, (p.0 << step, p.1 << step))];
-        numbering.tree(triangle, &mut ids, |p| out.vertex(at(p)))?;
+        numbering.tree(triangle, &mut ids, |p| out(Part::Vertex(placement.to_world(at(p)))))?;
         for node in 0..faces_per_tree {
-            // Counted from 1.
-            let [a, b, c] = lattice::node(level, level, node).map(|p| ids[lattice::index(level, p)] + 1);
-            writeln!(out.inner, "f {a} {b} {c}")?;
+            out(Part::Face(lattice::node(level, level, node).map(|p| ids[lattice::index(level, p)])))?;
         }
     }
-    out.inner.flush()?;
     Ok(ExportCounts { vertices: numbering.vertices(), faces: scene.trees() as u64 * u64::from(faces_per_tree) })
-}
-
-struct Writer<W: Write> {
-    inner: BufWriter<W>,
-    placement: crate::mesh::Placement,
-}
-
-impl<W: Write> Writer<W> {
-    fn vertex(&mut self, p: [i32; 3]) -> io::Result<()> {
-        let [x, y, z] = self.placement.to_world(p);
-        writeln!(self.inner, "v {x} {y} {z}")
-    }
 }

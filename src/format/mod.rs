@@ -25,7 +25,7 @@ mod staging;
 pub use colour::to_srgb;
 pub use decode::{child_corners, last_displacements};
 pub use encode::{SceneInfo, TreeBvh, build, encode, tree_boxes};
-pub use export::{ExportCounts, export_level};
+pub use export::{ExportCounts, LevelMesh, export_level, level_mesh};
 pub use job::JobView;
 pub use layout::{LevelStarts, has_split};
 pub use lines::{

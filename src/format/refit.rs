@@ -10,6 +10,7 @@ use super::sections::{COUNT, FileSection, place};
 use super::shading::SmoothShading;
 use super::{Box16, Line, Meta, Scene, SceneError, tree_boxes};
 use crate::mesh::{Hierarchy, SharedEdges, SurfaceError, first_not_finite, grid_holds, lattice, move_vertices};
+use serde::Deserialize;
 use std::convert::Infallible;
 use std::sync::Arc;
 use thiserror::Error;
@@ -48,7 +49,8 @@ pub enum RefitError {
 }
 
 /// Shading normals of a scene that is refitted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Shading {
     /// Those of the facets around each vertex, by their area; where trees had normals of their own at a vertex, as at a crease, those of facets on one side of it.
     #[default]
@@ -71,7 +73,8 @@ impl Shading {
 }
 
 /// Where units lie in a scene that is refitted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Grid {
     /// Where building the scene anew would have them: the box of the new positions fills the range of coordinates.
     #[default]

@@ -16,14 +16,27 @@ const SUFFIX: &str = ".tmp";
 /// Where files cannot be locked, what nobody has changed for so long is abandoned.
 const ABANDONED_AFTER: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Writes a file through `fill` under a temporary name beside `path` and renames it.
+/// Writes a file through `fill` under a temporary name beside `path` and renames it. A file that was there keeps its permissions, and a link that names it stays.
 ///
 /// # Errors
-/// What `fill` or the file system says; `path` is then untouched and the temporary file gone.
+/// What `fill` or the file system says, or there is something else than a file; `path` is then untouched and the temporary file gone.
 pub fn write_and_rename(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    // A link that leads nowhere is replaced.
+    let target = path.canonicalize();
+    let (path, there) = match &target {
+        Ok(target) => (target.as_path(), Some(fs::metadata(target)?)),
+        Err(_) => (path, None),
+    };
+    if there.as_ref().is_some_and(|there| !there.is_file()) {
+        // Renaming a file to the name of a device would take the device away.
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not an ordinary file"));
+    }
     let mut out = BufWriter::new(temporary_beside(path)?);
     fill(&mut out)?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    if let Some(there) = there {
+        file.as_file().set_permissions(there.permissions())?;
+    }
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
 }
@@ -130,6 +143,29 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         let none = write_and_rename(&folder.path().join("none/a"), |_| Ok(())).unwrap_err();
         assert!(!none.to_string().contains(".tmp"), "{none}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_there_stays_what_it_is() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("file"), b"old").unwrap();
+        fs::set_permissions(path("file"), fs::Permissions::from_mode(0o640)).unwrap();
+        symlink(path("file"), path("link")).unwrap();
+        write_and_rename(&path("link"), |out| out.write_all(b"new")).unwrap();
+        assert!(path("link").is_symlink());
+        assert_eq!(fs::read(path("file")).unwrap(), b"new");
+        assert_eq!(fs::metadata(path("file")).unwrap().permissions().mode() & 0o777, 0o640);
+        // Neither a device nor a folder makes way for a file; of links to them the same holds.
+        symlink("/dev/null", path("device")).unwrap();
+        for other in [path("device"), folder.path().to_owned()] {
+            let error = write_and_rename(&other, |_| Ok(())).unwrap_err();
+            assert_eq!(error.to_string(), "it is not an ordinary file", "{}", other.display());
+        }
+        assert!(path("device").is_symlink());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 
     #[cfg(unix)]

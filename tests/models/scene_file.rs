@@ -1,7 +1,7 @@
 //! Scene files: what is written comes back, and what is broken is refused.
 
 use lodray::format::audit::reading;
-use lodray::format::{Scene, export_level};
+use lodray::format::{Scene, export_level, level_mesh};
 use lodray::mesh::{BoundKind, Hierarchy, edge_index, edges_of_tree, lattice, quantise};
 use lodray::num::VertexForm;
 use lodray_test_support::models::build_with;
@@ -468,6 +468,10 @@ fn exported_levels_are_welded_by_topology() {
             let (models, _) = tobj::load_obj_buf(&mut &obj[..], &options, |_| Err(tobj::LoadError::GenericFailure)).unwrap();
             assert_eq!(models[0].mesh.positions.len() as u64, 3 * vertices);
             assert_eq!(models[0].mesh.indices.len() as u64, 3 * counts.faces);
+            // In memory they are the same.
+            let mesh = level_mesh(&scene, level as u32).unwrap();
+            assert!(mesh.faces.as_flattened().iter().copied().eq(models[0].mesh.indices.iter().map(|&id| u64::from(id))));
+            assert_eq!(mesh.vertices.as_flattened(), &models[0].mesh.positions[..]);
             // Faces stand in node order with their own corners.
             let node = k as usize * k as usize - 1;
             for (index, corner) in models[0].mesh.indices[3 * node..][..3].iter().zip(scene.triangle(0, level as u32, node)) {
@@ -477,5 +481,5 @@ fn exported_levels_are_welded_by_topology() {
             }
         }
     }
-    assert!(export_level(&scene(&fan(1)), 2, Vec::new()).is_err());
+    assert!(export_level(&scene(&fan(1)), 2, Vec::new()).is_err() && level_mesh(&scene(&fan(1)), 2).is_err());
 }

@@ -229,3 +229,23 @@ fn numbers() {
         ("export good.lod -o new.obj --level -1", USAGE, "'-1' for '--level"),
     ]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_printed_is_an_error_but_not_for_a_closed_pipe() {
+    use std::process::{Command, Stdio};
+    for args in ["help", "help simulate", "--version", "unit", "unit --json"] {
+        let run = |out: Stdio| {
+            let mut command = Command::new(assert_cmd::cargo::cargo_bin!("lodray"));
+            command.args(args.split_whitespace()).stdout(out).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap()
+        };
+        let full = run(fs::File::options().write(true).open("/dev/full").unwrap().into());
+        let said = String::from_utf8(full.stderr).unwrap();
+        assert_eq!(full.status.code(), Some(FAILS), "{args}: {said}");
+        assert!(said.starts_with("error: cannot write to standard output: ") && said.lines().count() == 1, "{args}: {said}");
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let closed = run(writer.into());
+        assert!(closed.status.success() && closed.stderr.is_empty(), "{args}");
+    }
+}

@@ -222,6 +222,8 @@ fn wrong_words_are_one_clear_error() {
         ("--vcd a.vcd --window 9000000:9000001 -o new/out", FAILS, "begins beyond the frame's end"),
         ("--threads 0", USAGE, "'0' is not a whole number from 1 to 1024"),
         ("--delta -1", USAGE, "'-1' for '--delta"),
+        ("--rlod-every 7", USAGE, "--rlod-every: lod has no such knob; rlod has one"),
+        ("--method bvh --delta 1", USAGE, "--delta: bvh has no such knob; "),
         ("-o a.lod", FAILS, "cannot make folder a.lod"),
     ] {
         desk.refused(&format!("{SHOT} {args}"), code, &[fragment]);
