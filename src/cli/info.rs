@@ -233,7 +233,7 @@ fn depths(trees: &[usize]) -> String {
 fn promise(bounds: BoundKind) -> &'static str {
     match bounds {
         BoundKind::Largest => "delta 1 keeps each level's displacement under a pixel; levels add up",
-        BoundKind::Total => "delta 1.5 keeps what is seen within a pixel of its place on the surface",
+        BoundKind::Total => "delta 1.6 keeps what is seen within a pixel of its place on the surface",
     }
 }
 

@@ -108,7 +108,7 @@ enum Command {
     /// Put two results of simulations side by side
     #[command(after_long_help = words::SIMULATE)]
     Compare(compare::Args),
-    /// Measure what an error costs: every method's error against time, energy and traffic
+    /// Measure what an error costs: errors of methods against time, energy and traffic
     ErrorTime(error_time::Args),
     /// Show results as one page, with nothing to fetch: diagrams, tables, pictures, and how they were made
     Report(report::Args),

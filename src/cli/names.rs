@@ -68,7 +68,7 @@ impl Named for BoundKind {
         match self {
             Self::Largest => "The largest displacement of one split at or below an edge, as in the paper",
             Self::Total => {
-                "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.5 keeps what is seen within a pixel of the surface)"
+                "The displacements of all splits at and below it, one upon the other: --delta is then a promise (1.6 keeps what is seen within a pixel of its place on the surface)"
             }
         }
     }

@@ -106,7 +106,7 @@ impl Knobs {
 pub static DELTA: Knob = Knob {
     name: "delta",
     value_name: "DELTA",
-    help: "Quality of methods with level of detail: 1 tolerates a pixel (docs/error-bound.md: what is seen is off by 1.5 at most), 0 is the base mesh, inf full detail",
+    help: "Quality of methods with level of detail: 1 tolerates a pixel (docs/error-bound.md: what is seen is off by about 1.5 at most), 0 is the base mesh, inf full detail",
     default: Some("1"),
     words: &[],
     of_frame: true,

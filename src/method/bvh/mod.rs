@@ -161,7 +161,7 @@ pub static METHOD_SIX: Registered = Registered {
 /// The method with 32-bit boxes.
 pub static METHOD_WIDE: Registered = Registered {
     name: "bvh32",
-    help: "The same with 32-bit boxes",
+    help: "Quad-BVH of the full-resolution mesh, 32-bit boxes",
     knobs: &[&NODE_ORDER, &LEAF_LAYOUT, &LEAF_SIZE, &PACKET],
     error: None,
     over: Over::Scene,
