@@ -59,8 +59,9 @@ fn benches(c: &mut Criterion) {
             traverser.trace(ray, &mut NoSteps, &mut closest);
             closest.record()
         };
-        group
-            .bench_function("quad-BVH, boxes in steps, a line a triangle, hitting rays", |b| b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count()));
+        group.bench_function("quad-BVH, boxes in steps, a line a triangle, hitting rays", |b| {
+            b.iter(|| rays.iter().filter(|r| black_box(hit_by(r)).is_some()).count())
+        });
         group.finish();
     }
 }

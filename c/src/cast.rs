@@ -6,6 +6,7 @@ use crate::rays::{LodrayRay, rays_at};
 use crate::scene::LodrayScene;
 use lodray::run::HitRow;
 use lodray::scene::SceneMethod;
+use lodray::study::pruned::check_normals;
 use std::ffi::{c_char, c_int};
 
 /// A way to find hits in a scene, with what it needs for that. It does not change: any number of threads may use it at once.
@@ -89,6 +90,7 @@ pub unsafe extern "C" fn lodray_method_cast(
     done(|| {
         // SAFETY: the caller's promise.
         let (method, rays, hits) = unsafe { (shared("method", method)?, rays_at(rays, count)?, room("hits", hits, count)?) };
+        check_normals(method.0.scene(), "a hit's normal")?;
         for (hit, row) in hits.iter_mut().zip(method.0.cast(&rays)) {
             hit.write(LodrayHit::of(&row));
         }

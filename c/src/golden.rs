@@ -9,6 +9,7 @@ use crate::scene::LodrayScene;
 use lodray::hardware::ports::{HitOut, RayIn};
 use lodray::num::{RayT, U};
 use lodray::scene::Golden;
+use lodray::study::pruned::check_normals;
 use std::ffi::c_int;
 
 /// The golden traverser of a scene: exact arithmetic, no block of the hardware, slow. It does not change: any number of threads may use it at once.
@@ -68,6 +69,7 @@ pub unsafe extern "C" fn lodray_golden_cast(
     done(|| {
         // SAFETY: the caller's promise.
         let (golden, rays, hits) = unsafe { (shared("golden", golden)?, rays_at(rays, count)?, room("hits", hits, count)?) };
+        check_normals(golden.0.scene(), "a hit's normal")?;
         let judged = golden.0.cast(&rays, quality(delta)?);
         for ((tag, hit), judged) in (0u32..).zip(hits.iter_mut()).zip(judged) {
             let (in_i, secondary_i) = judged.ray.map(|ray| entered(tag, &ray)).unwrap_or_default();

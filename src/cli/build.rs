@@ -2,6 +2,7 @@
 
 use super::args::{levels, whole};
 use super::common::is_quiet;
+use super::folder::with_named;
 use super::form::FormArgs;
 use super::info;
 use super::input::InputFile;
@@ -31,9 +32,9 @@ pub struct Args {
     /// A base mesh of so many triangles, whatever is lost
     #[arg(long, value_name = "TRIANGLES", value_parser = whole::<u32>(1..=u64::from(u32::MAX)), allow_negative_numbers = true)]
     base: Option<u32>,
-    /// Edges that bend by more than this stay sharp lines, and are shaded so where the mesh has no normals of its own
-    #[arg(long, value_name = "DEGREES", default_value_t = DEFAULT_CREASE_ANGLE, value_parser = crease, allow_negative_numbers = true)]
-    crease_angle: f64,
+    /// Edges that bend by more than this stay sharp lines, and are shaded so where the mesh has no normals of its own (default 50)
+    #[arg(long, value_name = "DEGREES", value_parser = crease, allow_negative_numbers = true)]
+    crease_angle: Option<f64>,
     #[command(flatten)]
     subdivide: SubdivideArgs,
     #[command(flatten)]
@@ -52,9 +53,12 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let source = Source::new(&args.mesh);
     let inputs: Vec<&Path> = source.files().iter().copied().chain(args.subdivide.map()).collect();
-    check_target(&args.out, &inputs)?;
+    check_target(&args.out, &with_named(&inputs).iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let crease_angle = args.crease_angle.unwrap_or(DEFAULT_CREASE_ANGLE);
     if args.subdivide.is_wanted() {
-        let scene = args.subdivide.make(&source, &args.reading, args.levels, args.crease_angle, args.form, args.strict)?;
+        let is_used = args.crease_angle.is_none() || args.subdivide.has_creases();
+        anyhow::ensure!(is_used, "--crease-angle: loop and catmull-clark have no creases");
+        let scene = args.subdivide.make(&source, &args.reading, args.levels, crease_angle, args.form, args.strict)?;
         return finish(&scene, &args.out, args.json);
     }
     let mesh = args.reading.read(&source, args.strict)?;
@@ -67,7 +71,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         base_triangles: args.base.map(|n| n as usize),
         max_error: args.max_error,
         reserve: 0.0,
-        crease_angle: args.crease_angle,
+        crease_angle,
     };
     let options = BuildOptions { remesh: Some(remesh), name: source.name(), origin, ..args.form.options() };
     let scene = with_progress(&mesh, &options).with_context(|| source.path.display().to_string())?;

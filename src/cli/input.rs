@@ -3,13 +3,13 @@
 use super::output::{busy, remark, warn};
 use anyhow::Context;
 use lodray::format::{Meta, Scene};
-use lodray::mesh::{MeshFormat, read_as};
+use lodray::mesh::{MeshFormat, named_files, read_as};
 use lodray::method::Over;
 use lodray::scene::BuildOptions;
 use lodray::study::Chosen;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use xxhash_rust::xxh3::xxh3_64;
+use xxhash_rust::xxh3::{Xxh3Default, xxh3_64};
 
 /// What `build` records of its mesh file.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,9 @@ pub struct InputFile {
     name: String,
     /// Of its bytes.
     xxh3: String,
+    /// Of the bytes of the files that are read with it, one after the other; none of a mesh without any, or of a scene by an older program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    with: Option<String>,
     /// Its format, whatever its name ends in.
     format: MeshFormat,
     /// Vertices at open edges that are at most this far apart were made one.
@@ -37,14 +40,19 @@ impl InputFile {
     /// That of a mesh file of this format which was welded so.
     pub fn of(path: &Path, format: MeshFormat, weld: Option<f64>) -> anyhow::Result<Self> {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-        Ok(Self { name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), xxh3: hash(&bytes), format, weld })
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { name, xxh3: hash(&bytes), with: hash_with(path)?, format, weld })
     }
 
     /// The first of the files that it is; those that were named, else the ones of its name beside the scene and here.
     fn find(&self, scene: &Path, named: &[PathBuf]) -> Option<PathBuf> {
         let beside = [scene.parent().unwrap_or(Path::new("")).join(&self.name), PathBuf::from(&self.name)];
         let candidates = if named.is_empty() { &beside[..] } else { named };
-        candidates.iter().find(|path| path.is_file() && std::fs::read(path).is_ok_and(|bytes| hash(&bytes) == self.xxh3)).cloned()
+        let is_same = |path: &&PathBuf| {
+            let same = path.is_file() && std::fs::read(path).is_ok_and(|bytes| hash(&bytes) == self.xxh3);
+            same && (self.with.is_none() || hash_with(path).is_ok_and(|with| with == self.with))
+        };
+        candidates.iter().find(is_same).cloned()
     }
 
     /// The mesh as a scene of its own triangles, vertices exact.
@@ -57,6 +65,16 @@ impl InputFile {
         let options = BuildOptions { name: self.name.clone(), ..BuildOptions::own_triangles() };
         busy("encoding", || Scene::of_mesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())
     }
+}
+
+/// Of the files that are read with a mesh, if there are any.
+fn hash_with(path: &Path) -> anyhow::Result<Option<String>> {
+    let files = named_files(path);
+    let mut hash = Xxh3Default::new();
+    for file in &files {
+        std::fs::File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash)).with_context(|| file.display().to_string())?;
+    }
+    Ok((!files.is_empty()).then(|| format!("{:016x}", hash.digest())))
 }
 
 fn hash(bytes: &[u8]) -> String {
@@ -118,7 +136,8 @@ pub fn mesh_of(scene: &Scene, path: &Path, args: &InputArgs) -> anyhow::Result<S
     let found = file.find(path, &args.mesh).with_context(|| {
         let place =
             if args.mesh.is_empty() { "neither beside it nor in the current folder; name it with --mesh" } else { "none of --mesh" };
-        format!("{} was built from {}, and that very file is {place}", path.display(), file.name)
+        let with = if file.with.is_some() { ", with the files that belong to it," } else { "" };
+        format!("{} was built from {}, and that very file{with} is {place}", path.display(), file.name)
     })?;
     file.scene(&found)
 }

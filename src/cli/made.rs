@@ -2,6 +2,7 @@
 
 use crate::cli::bars::Bars;
 use crate::cli::common::is_quiet;
+use crate::cli::folder::with_named;
 use crate::cli::form::FormArgs;
 use crate::cli::generate;
 use crate::cli::output::{busy, open, toml_in_one_line, warn};
@@ -114,7 +115,7 @@ pub fn seen<'a>(file: &SceneFile, scenes: &'a [Scene], methods: &'a [Arc<dyn Met
 /// What results say of the models of a description.
 pub fn facts(description: &Path, file: &SceneFile, scenes: &[Scene]) -> anyhow::Result<SceneFacts> {
     let (mut hash, mut known) = (Xxh3Default::new(), HashSet::new());
-    for path in std::iter::once(description.to_owned()).chain(model_files(description, file)?) {
+    for path in std::iter::once(description.to_owned()).chain(with_named(&model_files(description, file)?)) {
         if !known.contains(&path) {
             let copied = File::open(&path).and_then(|mut file| std::io::copy(&mut file, &mut hash));
             copied.with_context(|| format!("cannot read {}", path.display()))?;

@@ -1,7 +1,7 @@
 //! Options of methods, from the registry: which method, and its knobs.
 
-use clap::parser::ValueSource;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use lodray::method::{Knob, Knobs, METHODS, Registered, binary16, cluster, find, grid, lod, rlod, stochastic};
 use lodray::study::Chosen;

@@ -167,6 +167,15 @@ pub fn check_target(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Whether two files that are to be written are one: they need not be there yet, but their folders are.
+pub fn is_same_target(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Some((folder.canonicalize().ok()?, path.file_name()?.to_owned()))
+    };
+    place(a).is_some_and(|a| place(b) == Some(a))
+}
+
 /// A number with four digits that count and no idle zeros.
 pub fn plain(value: f64) -> String {
     let size = value.abs();

@@ -2,6 +2,7 @@
 
 use super::args::whole;
 use super::build::finish;
+use super::folder::with_named;
 use super::names::named;
 use super::output::{busy, check_target, open, print_json, progress, remark};
 use anyhow::{Context, ensure};
@@ -56,7 +57,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         );
     }
     ensure!(args.clip.is_none() || is_moving, "--clip: goes with a glTF file");
-    let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.positions).map(PathBuf::as_path).collect();
+    let inputs = with_named(&std::iter::once(&args.scene).chain(&args.positions).collect::<Vec<_>>());
+    let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     check_target(&args.out, &inputs)?;
     let scene = open(&args.scene)?;
     let read = match (&args.positions, args.motion) {

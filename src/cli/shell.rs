@@ -1,10 +1,10 @@
 //! `completions` and `man`: what shells and `man` know of the program, made from its command line.
 
-use super::output::{print_line, remark};
+use super::output::{print_line, remark, write_file};
 use anyhow::Context;
 use clap::Command;
 use clap_complete::Shell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const NAME: &str = "lodray";
@@ -29,11 +29,22 @@ pub fn completions(args: &CompletionsArgs, mut program: Command) -> anyhow::Resu
     Ok(ExitCode::SUCCESS)
 }
 
+/// Writes the page of a command, and those of its own commands.
+fn pages(of: &Command, folder: &Path) -> anyhow::Result<()> {
+    let page = clap_mangen::Man::new(of.clone());
+    let mut text = Vec::new();
+    page.render(&mut text)?;
+    write_file(&folder.join(page.get_filename()), text)?;
+    of.get_subcommands().filter(|own| !own.is_hide_set()).try_for_each(|own| pages(own, folder))
+}
+
 /// Writes the manual pages of `program`.
 pub fn man(args: &ManArgs, program: Command) -> anyhow::Result<ExitCode> {
     let shown = args.folder.display();
     std::fs::create_dir_all(&args.folder).with_context(|| format!("cannot make folder {shown}"))?;
-    clap_mangen::generate_to(program, &args.folder).with_context(|| format!("cannot write to {shown}"))?;
+    let mut program = program.disable_help_subcommand(true);
+    program.build();
+    pages(&program, &args.folder)?;
     remark(&format!("pages in {shown}: man -l {}", args.folder.join("lodray.1").display()))?;
     Ok(ExitCode::SUCCESS)
 }

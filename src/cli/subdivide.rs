@@ -72,6 +72,16 @@ impl SubdivideArgs {
         self.subdivide.is_some() || self.displace.is_some()
     }
 
+    /// Where splits put vertices.
+    fn rule(&self) -> Rule {
+        self.subdivide.unwrap_or(Rule::Flat)
+    }
+
+    /// Whether edges may stay sharp by their angle: other rules have the whole surface smooth.
+    pub fn has_creases(&self) -> bool {
+        self.rule() == Rule::Flat
+    }
+
     /// The displacement map's file.
     pub fn map(&self) -> Option<&Path> {
         self.displace.as_deref()
@@ -90,7 +100,7 @@ impl SubdivideArgs {
         let displacement = self.displacement()?;
         let mesh = reading.read(source, strict)?;
         let name = || source.path.display().to_string();
-        let rule = self.subdivide.unwrap_or(Rule::Flat);
+        let rule = self.rule();
         if rule != Rule::Flat && !mesh.normals.is_empty() {
             source.lost("its shading normals are not kept: the subdivided surface has its own", strict)?;
         }

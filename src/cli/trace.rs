@@ -1,7 +1,7 @@
 //! `trace`: one ray through the traversal unit, cycle by cycle.
 
 use super::args::{CameraArgs, whole};
-use super::output::{check_target, open_any, print_line, remark, write_file};
+use super::output::{check_target, is_same_target, open_any, print_line, remark, write_file};
 use super::plan;
 use anyhow::Context;
 use lodray::format::Scene;
@@ -88,10 +88,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         height - 1
     );
     let file = args.out.as_deref().filter(|path| *path != Path::new("-"));
-    let files = file.map(|vcd| Files::beside(vcd, &args.scene)).transpose()?;
+    let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.plan).map(PathBuf::as_path).collect();
+    let files = file.map(|vcd| Files::beside(vcd, &inputs)).transpose()?;
     if let Some(path) = &args.ports {
-        check_target(path, &[&args.scene])?;
-        let clash = files.as_ref().is_some_and(|files| files.all().contains(&path.as_path()));
+        check_target(path, &inputs)?;
+        let clash = files.as_ref().is_some_and(|files| files.all().iter().any(|of| is_same_target(of, path)));
         anyhow::ensure!(!clash, "cannot write {}: it is a file of the waveform", path.display());
     }
     let entered = space.enter(&camera.ray(x, y), args.delta);
@@ -178,11 +179,11 @@ struct Files {
 
 impl Files {
     /// The files beside `vcd`, refused if they cannot be written.
-    fn beside(vcd: &Path, input: &Path) -> anyhow::Result<Self> {
+    fn beside(vcd: &Path, inputs: &[&Path]) -> anyhow::Result<Self> {
         let with = |extension| vcd.with_extension(extension);
         let files = Self { vcd: vcd.to_owned(), gtkw: with("gtkw"), surfer: with("sucl") };
         for path in files.all() {
-            check_target(path, &[input])?;
+            check_target(path, inputs)?;
         }
         let clash = files.all().iter().skip(1).any(|path| *path == vcd);
         anyhow::ensure!(!clash, "cannot write {}: the ending is that of a save file; use .vcd", vcd.display());

@@ -32,12 +32,13 @@ impl Scene {
     /// The file cannot be read, or it is not a valid scene: the error names file, section and field.
     pub fn open(path: &Path) -> Result<Self, SceneError> {
         let io = |action| move |source| SceneError::Io { path: path.to_path_buf(), action, source };
-        let file = File::open(path).map_err(io("cannot open"))?;
-        let kind = file.metadata().map_err(io("cannot read its size"))?;
         let invalid = |problem: String| SceneError::Invalid { path: path.to_path_buf(), problem };
+        // Asked before it is opened: to open a pipe may wait for ever.
+        let kind = std::fs::metadata(path).map_err(io("cannot open"))?;
         if !kind.is_file() || kind.len() == 0 {
             return Err(invalid("magic: not a lodray scene file (empty, or not a file)".into()));
         }
+        let file = File::open(path).map_err(io("cannot open"))?;
         // SAFETY: the map is read-only, and scene files are replaced by renaming, never changed in place; a program that does change one while it
         // is mapped breaks this assumption, as with every mapped file.
         let map = unsafe { Mmap::map(&file) }.map_err(io("cannot map"))?;
@@ -177,6 +178,17 @@ impl Scene {
         let materials = self.colours().len().max(1); // without colours all are material 0
         if let Some(tree) = self.sources().par_iter().position_first(|&[_, material]| material as usize >= materials) {
             return Err(format!("section SOURCES: material of tree {tree} has no colour"));
+        }
+        if self.colours().len() > 1 << 16 {
+            return Err(format!("section COLOURS: {} colours, more than the 65536 that trees can name", self.colours().len()));
+        }
+        let mut named = vec![false; self.trees()];
+        for (tree, &[source, _]) in self.sources().iter().enumerate() {
+            match named.get_mut(source as usize) {
+                Some(named) if !*named => *named = true,
+                Some(_) => return Err(format!("section SOURCES: base triangle {source} is named twice, last by tree {tree}")),
+                None => return Err(format!("section SOURCES: there is no base triangle {source}, which tree {tree} names")),
+            }
         }
         let nodes = self.nodes();
         let mut seen = vec![false; nodes.len()];

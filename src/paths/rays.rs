@@ -8,9 +8,12 @@ use crate::rays::RaySource;
 use crate::run::{Frame, RayHit, Worker};
 use crate::step::{Batch, MapError, MemoryMap, Nodes};
 
+/// Most paths of a pixel in a batch.
+const SAMPLES: u32 = 64;
+
 /// Paths of a scene as a frame for machines.
 ///
-/// A batch has the paths of a tile of pixels: first all rays of the camera, then all that leave their hits, and so on. A ray waits for the one behind whose hit it starts.
+/// A batch has the paths of a tile of pixels, those of [`SAMPLES`] of each at most, so that memory does not grow with them: first all rays of the camera, then all that leave their hits, and so on. A ray waits for the one behind whose hit it starts.
 pub struct PathFrame<'a> {
     paths: &'a Paths<'a>,
     memory: WorldMemory,
@@ -37,7 +40,7 @@ impl Frame for PathFrame<'_> {
     }
 
     fn batches(&self) -> usize {
-        self.paths.camera.batches()
+        self.paths.camera.batches() * parts(self.paths)
     }
 
     fn worker(&self, _: usize) -> Box<dyn Worker + '_> {
@@ -57,6 +60,11 @@ impl Frame for PathFrame<'_> {
     }
 }
 
+/// Batches of a tile.
+fn parts(paths: &Paths<'_>) -> usize {
+    paths.samples.div_ceil(SAMPLES) as usize
+}
+
 struct PathWorker<'a> {
     paths: &'a Paths<'a>,
     memory: &'a WorldMemory,
@@ -66,10 +74,12 @@ struct PathWorker<'a> {
 impl Worker for PathWorker<'_> {
     fn batch(&mut self, batch: usize) -> (Batch, Vec<RayHit>) {
         let (paths, mut under_way) = (self.paths, Vec::<Path>::new());
-        paths.camera.batch(batch, &mut |number, _| {
+        let (tile, first) = (batch / parts(paths), (batch % parts(paths)) as u32 * SAMPLES);
+        let samples = first..paths.samples.min(first + SAMPLES);
+        paths.camera.batch(tile, &mut |number, _| {
             let width = u64::from(paths.camera.width);
             let [x, y] = [number % width, number / width].map(|at| at as u32); // within the picture
-            under_way.extend((0..paths.samples).map(|sample| paths.start(x, y, sample)));
+            under_way.extend(samples.clone().map(|sample| paths.start(x, y, sample)));
         });
         let mut listener = Listener::new(self.memory);
         while !under_way.is_empty() {

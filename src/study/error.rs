@@ -74,6 +74,14 @@ pub enum StudyError {
         /// Of the picture, in pixels.
         size: [u32; 2],
     },
+    /// A converged picture with no more samples than those that are held against it.
+    #[error("--most-samples {samples}: a converged picture has at least {least} here, four times as many as the others; 0 leaves it out")]
+    Converged {
+        /// Of a pixel.
+        samples: u64,
+        /// The fewest.
+        least: u64,
+    },
     /// There is no machine.
     #[error("no machine")]
     NoMachine,

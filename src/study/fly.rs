@@ -56,7 +56,9 @@ pub fn fly<E>(what: &Fly<'_>, progress: &dyn Progress, each: &mut dyn FnMut(usiz
         each(frame, &now)?;
         let sight = Sight::new(camera, &space, what.delta);
         let last = frame.checked_sub(1).map(|last| &what.cameras[last]);
-        let pops = before.as_ref().zip(last).map(|(then, last)| popping(method, surface, &shader, &then.frame, [last, camera], &sight));
+        // Pops are of rays between pixels, and what a pruned scene has serves the cameras' own.
+        let seen = before.as_ref().zip(last).filter(|_| what.scene.meta().is_whole());
+        let pops = seen.map(|(then, last)| popping(method, surface, &shader, &then.frame, [last, camera], &sight));
         flown.push(Flown {
             frame,
             eye: camera.eye.to_array(),

@@ -3,10 +3,10 @@
 use super::error::{StudyError, ViewError};
 use crate::format::{JobRegion, Scene};
 use crate::mesh::{BoundKind, procedural};
-use crate::method::Knob;
 use crate::method::bvh::{LEAF_LAYOUT, LEAF_SIZE};
 use crate::method::knob::DELTA;
 use crate::method::lod;
+use crate::method::{Knob, Over};
 use crate::num::VertexForm;
 use crate::rays::{Camera, DEFAULT_DIRECTION, DEFAULT_VIEW_ANGLE_DEGREES, ModelSpace, View};
 use crate::report::results_version;
@@ -50,6 +50,8 @@ pub struct SceneJobs {
     pub origin: Origin,
     /// Checksum of its file.
     pub content: u64,
+    /// The mesh that it was built from is at hand: methods that take either are over it.
+    pub has_mesh: bool,
     /// Cameras.
     pub views: Vec<ViewJob>,
     /// Boxes that cameras stay in; a plan alone has some.
@@ -106,7 +108,7 @@ fn is_one(tiles: &u32) -> bool {
 impl SceneJobs {
     /// A scene of which nothing is to be seen yet; a file that is to be known again by its bytes needs their checksum besides.
     pub fn new(name: &str, origin: Origin) -> Self {
-        Self { name: name.to_owned(), origin, content: 0, views: Vec::new(), regions: Vec::new() }
+        Self { name: name.to_owned(), origin, content: 0, has_mesh: false, views: Vec::new(), regions: Vec::new() }
     }
 
     /// Opens or generates it.
@@ -167,6 +169,14 @@ impl ViewJob {
         let direction = Some(DEFAULT_DIRECTION);
         let view = View { eye: self.eye.or(toward), direction, target: self.target, up: self.up, distance: self.distance, fov: self.fov };
         Ok(Camera::new(&view, space, self.size[0], self.size[1])?)
+    }
+
+    /// The same, of which machines are handed the rays in the order that it names.
+    ///
+    /// # Errors
+    /// As [`Self::camera`].
+    pub fn frame(&self, space: &ModelSpace) -> Result<Camera, ViewError> {
+        Ok(self.camera(space)?.in_turn(self.tiles_in_turn))
     }
 }
 
@@ -236,6 +246,10 @@ impl Jobs {
         }
         if let Origin::File(_) = &scene.origin {
             inputs.extend(scene.content.to_le_bytes());
+        }
+        // The same method over another surface is another job.
+        if scene.has_mesh && chosen.method.over == Over::Either {
+            inputs.extend(b"over the mesh");
         }
         let place = match (view.distance, view.eye) {
             (Some(distance), _) => format!("{distance} radii"),

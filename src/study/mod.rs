@@ -60,6 +60,7 @@ pub use chosen::{Chosen, ChosenError};
 pub use error::{StudyError, ViewError, one_line};
 pub use error_time::{
     BuildTime, ErrorTimePlan, HostTime, Measure, Measured, ViewRow, document, error_time, error_time_part, error_time_pieces, in_machine,
+    least_converged,
 };
 pub use fault::{fault, fault_at};
 pub use fly::{Flown, Fly, fly, fly_models};

@@ -199,7 +199,7 @@ impl Workshop<'_> {
             registered: group.chosen.method,
             knobs: &group.chosen.knobs,
             method: &*method,
-            rays: PassRays::Camera(camera.in_turn(group.view.tiles_in_turn)),
+            rays: PassRays::Camera(group.view.frame(&self.space)?),
         };
         let targets: Vec<_> = group.jobs.iter().map(|(_, target)| target.clone()).collect();
         let row = |(result, (key, _)): (Outcome, &(String, Target))| match result {

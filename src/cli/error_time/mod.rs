@@ -13,6 +13,7 @@ use anyhow::Context;
 use lodray::picture::Shading;
 use lodray::report::diagram::{csv, diagrams, latex, left_out_csv};
 use lodray::report::error_time::{ErrorTime, USUAL_COSTS, USUAL_ERRORS, verdict_text, verdicts};
+use lodray::report::is_file_name;
 use lodray::report::page::{Documents, PICTURE_BYTES, embed};
 use lodray::study::pruned::check_normals;
 use lodray::study::shards::{FOLDER, Part, Pieces, gathered};
@@ -65,6 +66,7 @@ pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
     let lines = gathered::<ViewRow>(&args.out, Some(&args.out.join(LINES)), &keys)?;
     results(args, &plan, |rows| {
         for picture in lines.lines().filter_map(|row| row.measured.as_ref()).flat_map(|measured| &measured.pictures) {
+            anyhow::ensure!(is_file_name(&picture.file), "{}: '{}' is no name of a picture", args.out.join(FOLDER).display(), picture.file);
             let (from, to) = (args.out.join(FOLDER).join(&picture.file), args.out.join(&picture.file));
             let bytes = std::fs::read(&from).with_context(|| format!("cannot read {}", from.display()))?;
             write_file(&to, bytes)?;

@@ -20,8 +20,9 @@ use lodray::picture::{PIXELS_PER_DEGREE, Shading};
 use lodray::rays::{MAX_SIDE, ModelSpace};
 use lodray::run::{self, Compute};
 use lodray::scene::Target;
-use lodray::study::{Chosen, ErrorTimePlan, Jobs, Measure, Origin, SceneJobs, ViewJob};
+use lodray::study::{Chosen, ErrorTimePlan, Jobs, Measure, Origin, SceneJobs, ViewJob, least_converged};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -135,6 +136,14 @@ fn pixels_per_degree(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|v| (1.0..=1000.0).contains(v)).ok_or_else(|| format!("'{s}' is not a number from 1 to 1000"))
 }
 
+/// Refuses what an option names twice: it would be measured twice.
+fn once<T: PartialEq + Display>(option: &str, given: &[T]) -> anyhow::Result<()> {
+    match given.iter().enumerate().find(|(k, value)| given[..*k].contains(value)) {
+        Some((_, twice)) => anyhow::bail!("{option}: {twice} is given twice"),
+        None => Ok(()),
+    }
+}
+
 impl Args {
     /// A scene with the mesh that it was built from at hand, where that can be found. It must be there if methods over it were named.
     pub fn with_input(&self, scene: Scene, path: &str) -> anyhow::Result<Scene> {
@@ -153,6 +162,8 @@ impl Args {
                 let mut jobs = read_views(list)?;
                 jobs.files.insert(list.clone());
                 let deltas = std::mem::take(&mut jobs.deltas);
+                // A sweep's own: errors are measured in any case, and figures over time are of no setting.
+                (jobs.error, jobs.intervals) = (false, false);
                 (jobs, deltas)
             }
             None => (self.listed()?, Vec::new()),
@@ -164,7 +175,11 @@ impl Args {
         } else if self.quick {
             values.insert("delta".to_owned(), ["0.25", "1", "4", "16"].map(str::to_owned).to_vec());
         }
-        values.extend(self.values.iter().cloned());
+        let named: BTreeSet<_> = self.values.iter().map(|(knob, _)| knob).collect();
+        values.retain(|knob, _| !named.contains(knob));
+        for (knob, more) in &self.values {
+            values.entry(knob.clone()).or_default().extend(more.iter().cloned());
+        }
         let mut sides = if !self.samples.is_empty() {
             self.samples.clone()
         } else if self.quick {
@@ -179,7 +194,7 @@ impl Args {
             shading: self.shading,
             pixels_per_degree: self.pixels_per_degree,
             host_rays: if self.no_host { 0 } else { 16_384 },
-            ..Measure::of(error_size, self.most_samples.unwrap_or(if self.quick { 8 } else { 32 }))
+            ..Measure::of(error_size, self.most_samples.unwrap_or(least_converged(&sides).max(if self.quick { 8 } else { 32 })))
         };
         ensure!(
             self.within.is_empty() || jobs.methods.iter().any(|chosen| *chosen.method == lod::METHOD),
@@ -201,6 +216,7 @@ impl Args {
             [] => &DISTANCES,
             given => given,
         };
+        once("--distances", distances)?;
         let view = |&distance: &f64| ViewJob::at([width, height], distance);
         let views: Vec<_> = distances.iter().map(view).collect();
         let mut scenes: Vec<SceneJobs> = Vec::new();
@@ -214,6 +230,7 @@ impl Args {
                 name,
                 origin: Origin::File(path.clone()),
                 content: xxh3_64(scene.bytes()),
+                has_mesh: false,
                 views: views.clone(),
                 regions: Vec::new(),
             });
@@ -224,6 +241,8 @@ impl Args {
             [] => Compute::ALL.to_vec(),
             given => given.to_vec(),
         };
+        once("--machine", &self.machine)?;
+        once("--compute", &compute.iter().map(|compute| compute.name()).collect::<Vec<_>>())?;
         let mut targets = Vec::new();
         for name in &self.machine {
             let machine = machine(name, &self.set, "--set").with_context(|| format!("--machine {name}"))?;

@@ -6,7 +6,7 @@
 mod record;
 
 use super::common::Invocation;
-use super::output::check_target;
+use super::output::{check_target, is_same_target};
 use anyhow::{Context, anyhow, ensure};
 use lodray::format::Staging;
 use lodray::mesh::named_files;
@@ -48,6 +48,8 @@ pub struct RunFolder {
     staging: Staging,
     /// Files of earlier runs.
     old: BTreeSet<String>,
+    /// The files that it is about to write, as far as that is known.
+    names: Vec<String>,
     record: Record,
     force: bool,
     /// After the staging folder: fields are dropped in their order.
@@ -69,9 +71,19 @@ impl RunFolder {
         let record = Record::new(Invocation::of_process(), inputs.iter().map(|input| Input::read(input)).collect::<anyhow::Result<_>>()?);
         let before = earlier(path, &record.command, overrule)?;
         let old = before.map_or_else(BTreeSet::new, |before| before.files);
-        let folder = Self { path: path.to_owned(), staging, old, record, force, made };
+        let own = names.iter().map(|&name| name.to_owned()).collect();
+        let folder = Self { path: path.to_owned(), staging, old, names: own, record, force, made };
         names.iter().try_for_each(|name| folder.check_free(name))?;
         Ok(folder)
+    }
+
+    /// Refuses another file to write, after the run, that would replace one of its own.
+    pub fn spares(&self, other: Option<&Path>) -> anyhow::Result<()> {
+        let own = self.names.iter().chain(&self.old).map(String::as_str).chain([RECORD]);
+        match other.filter(|other| own.into_iter().any(|name| is_same_target(&self.path.join(name), other))) {
+            Some(other) => anyhow::bail!("cannot write {}: it is a file of the run", other.display()),
+            None => Ok(()),
+        }
     }
 
     /// Where the run writes its files, all of them whole when [`RunFolder::finish`] is called.
@@ -160,8 +172,8 @@ pub fn earlier(path: &Path, command: &str, overrule: &Overrule) -> anyhow::Resul
 }
 
 /// Inputs, each with the files that are read with it.
-fn with_named(inputs: &[&Path]) -> Vec<PathBuf> {
-    inputs.iter().flat_map(|input| std::iter::once(input.to_path_buf()).chain(named_files(input))).collect()
+pub fn with_named<T: AsRef<Path>>(inputs: &[T]) -> Vec<PathBuf> {
+    inputs.iter().map(AsRef::as_ref).flat_map(|input: &Path| std::iter::once(input.to_path_buf()).chain(named_files(input))).collect()
 }
 
 /// Folders that were made for a run, the innermost first; they go again if nothing is in them.

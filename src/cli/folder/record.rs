@@ -3,13 +3,14 @@
 use crate::cli::common::Invocation;
 use crate::cli::output::write_file;
 use anyhow::{Context, anyhow};
+use lodray::report::is_file_name;
 use lodray::report::page::{RunFacts, RunInput};
 use lodray::study::fault_at;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::ErrorKind;
-use std::path::{Component, Path};
+use std::path::Path;
 use xxhash_rust::xxh3::Xxh3Default;
 
 /// The record's own file.
@@ -41,17 +42,22 @@ pub struct Record {
 pub struct Input {
     name: String,
     bytes: u64,
-    /// 64 bits, hexadecimal.
-    xxh3: String,
+    /// 64 bits, hexadecimal; none of a pipe, which can be read but once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    xxh3: Option<String>,
 }
 
 impl Input {
     /// The file at `path`, of that name.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let name = path.display().to_string();
+        if !std::fs::metadata(path).with_context(|| format!("cannot read {name}"))?.is_file() {
+            return Ok(Self { name, bytes: 0, xxh3: None });
+        }
         let mut hash = Xxh3Default::new();
         let copied = File::open(path).and_then(|mut file| std::io::copy(&mut file, &mut hash));
-        let bytes = copied.with_context(|| format!("cannot read {}", path.display()))?;
-        Ok(Self { name: path.display().to_string(), bytes, xxh3: format!("{:016x}", hash.digest()) })
+        let bytes = copied.with_context(|| format!("cannot read {name}"))?;
+        Ok(Self { name, bytes, xxh3: Some(format!("{:016x}", hash.digest())) })
     }
 }
 
@@ -89,7 +95,7 @@ impl Record {
         let record: Self =
             serde_json::from_str(&text).map_err(|error| anyhow!("{} is not the record of a run: {}", path.display(), fault_at(&error)))?;
         // Files are removed by these names.
-        if let Some(name) = record.files.iter().find(|name| !is_plain(name)) {
+        if let Some(name) = record.files.iter().find(|name| !is_own(name)) {
             anyhow::bail!("{} is not the record of a run: '{name}' is not the name of a file in its folder", path.display());
         }
         Ok(Some(record))
@@ -101,11 +107,9 @@ impl Record {
     }
 }
 
-/// Whether a name is that of a file beside the record, on every system.
-fn is_plain(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    let is_one = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == name);
-    is_one && !name.contains(['/', '\\', ':', '\0']) && name != NAME
+/// Whether a name is that of a file beside the record.
+fn is_own(name: &str) -> bool {
+    is_file_name(name) && name != NAME
 }
 
 #[cfg(test)]
@@ -115,10 +119,10 @@ mod tests {
     #[test]
     fn names_are_plain() {
         for good in ["image.png", "a b.svg", ".hidden", "..."] {
-            assert!(is_plain(good), "{good}");
+            assert!(is_own(good), "{good}");
         }
         for bad in ["", ".", "..", "../a", "a/b", "/a", "a/", "./a", "a\\b", "C:a", "run.json"] {
-            assert!(!is_plain(bad), "{bad}");
+            assert!(!is_own(bad), "{bad}");
         }
     }
 
@@ -129,7 +133,7 @@ mod tests {
         std::fs::write(folder.path().join("a.lod"), b"abc").unwrap();
         let input = Input::read(&folder.path().join("a.lod")).unwrap();
         // XXH3 of "abc" as its reference implementation gives it.
-        assert_eq!((input.bytes, input.xxh3.as_str()), (3, "78af5f94892f3950"));
+        assert_eq!((input.bytes, input.xxh3.as_deref()), (3, Some("78af5f94892f3950")));
         let mut record = Record::new(Invocation { command: "render".to_owned(), arguments: vec!["a.lod".to_owned()] }, vec![input]);
         record.files.insert("image.png".to_owned());
         record.write(folder.path()).unwrap();

@@ -32,6 +32,8 @@ const PICTURE: &str = "paths.png";
 const LIGHT: &str = "paths.exr";
 const FULL_PICTURE: &str = "full.png";
 const FULL_LIGHT: &str = "full.exr";
+const CONVERGED_PICTURE: &str = "converged.png";
+const CONVERGED_LIGHT: &str = "converged.exr";
 const FIGURES: &str = "paths.json";
 /// Results of the simulator, one for each number of bounces.
 const RESULTS: &str = "result.json";
@@ -131,8 +133,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inputs: Vec<&Path> = models.iter().map(PathBuf::as_path).chain([args.scene.as_path()]).collect();
     let mut names = vec![FIGURES];
     names.extend(if args.machine.is_none() { &[PICTURE, LIGHT][..] } else { &[RESULTS] });
-    if args.compare || args.converged.is_some() {
+    if args.compare {
         names.extend([FULL_PICTURE, FULL_LIGHT]);
+    }
+    if args.converged.is_some() {
+        names.extend([CONVERGED_PICTURE, CONVERGED_LIGHT]);
     }
     let folder = RunFolder::open(&args.out, names, &inputs, &args.overrule)?;
     let scenes = scenes(&args.scene, &file)?;
@@ -250,7 +255,7 @@ impl Subject<'_> {
         }
         if let Some(samples) = args.converged {
             let truth = shoot(&Paths { samples, seed: same.seed ^ OTHER_SEED, ..same }, "tracing full resolution, converged");
-            self.save(&truth, FULL_PICTURE, FULL_LIGHT, "full resolution, converged")?;
+            self.save(&truth, CONVERGED_PICTURE, CONVERGED_LIGHT, "full resolution, converged")?;
             report.against_converged = Some(against(&truth, samples, false));
         }
         Ok(())

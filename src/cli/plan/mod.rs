@@ -3,7 +3,7 @@
 mod speed;
 
 use super::args::{Size, radii};
-use super::output::{busy, check_target, open, print_json, print_line, print_table, read_text, remark, write_file};
+use super::output::{busy, check_target, is_same_target, open, print_json, print_line, print_table, read_text, remark, write_file};
 use super::sweep::{ListText, open_scene, read_jobs};
 use super::unit::{UnitFacts, gates};
 use anyhow::Context;
@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     package: Option<PathBuf>,
     /// Check the scenes against this plan instead of making one, and the rays of --job or --distance; without these the views that the plan has of a scene
-    #[arg(long, value_name = "PLAN", conflicts_with = "out")]
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["out", "json"])]
     check: Option<PathBuf>,
     #[command(flatten)]
     speed: SpeedArgs,
@@ -69,8 +69,9 @@ struct Document<'a> {
 
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inputs: Vec<&Path> = args.scenes.iter().chain(&args.job).chain(&args.plan).map(PathBuf::as_path).collect();
-    for out in args.out.iter().chain(&args.package) {
-        check_target(out, &inputs)?;
+    check_targets(args, &inputs)?;
+    if let (Some(out), Some(package)) = (&args.out, &args.package) {
+        anyhow::ensure!(!is_same_target(out, package), "--package {}: it is the file of the plan", package.display());
     }
     if let Some(path) = &args.plan {
         return say(args, &read(path)?, None);
@@ -80,6 +81,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None if args.distance.is_empty() => None,
         None => Some(seen(args)?),
     };
+    let more: Vec<_> = jobs.iter().flat_map(|jobs| &jobs.files).chain(&args.speed.files()?).cloned().collect();
+    check_targets(args, &more.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     anyhow::ensure!(jobs.is_some() || !args.speed.is_wanted(), "--speed: give the views, with --distance or as a list with --job");
     let given = args.check.as_deref().map(read).transpose()?;
     let mut frames = args.speed.frames()?;
@@ -94,6 +97,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     say(args, &plan, Some(&data))
 }
 
+/// Refuses outputs that cannot be written, or that are among `inputs`.
+fn check_targets(args: &Args, inputs: &[&Path]) -> anyhow::Result<()> {
+    args.out.iter().chain(&args.package).try_for_each(|out| check_target(out, inputs))
+}
+
 /// The scenes, seen from the distances of the command line.
 fn seen(args: &Args) -> anyhow::Result<Jobs> {
     let Size(width, height) = args.size;
@@ -103,6 +111,7 @@ fn seen(args: &Args) -> anyhow::Result<Jobs> {
         name: file.display().to_string(),
         origin: Origin::File(file.clone()),
         content: 0,
+        has_mesh: false,
         views: views.clone(),
         regions: Vec::new(),
     };

@@ -2,7 +2,7 @@
 
 use crate::cli::args::{Change, Size};
 use crate::cli::bars::Bars;
-use crate::cli::machines::machine;
+use crate::cli::machines::{machine, machine_files};
 use crate::cli::output::{busy, progress};
 use anyhow::Context;
 use lodray::format::Scene;
@@ -12,6 +12,7 @@ use lodray::rays::{ModelSpace, RaySource, Sight};
 use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute, FrameRays, HeldFrame};
 use lodray::study::{Cache, Chosen, ViewJob, count};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub struct SpeedArgs {
@@ -49,6 +50,15 @@ impl SpeedArgs {
         self.speed
     }
 
+    /// The files that describe the machine, if somebody wants to know.
+    pub fn files(&self) -> anyhow::Result<Vec<PathBuf>> {
+        if !self.speed {
+            return Ok(Vec::new());
+        }
+        let machine = machine(&self.machine, &self.set, "--set").with_context(|| format!("--machine {}", self.machine))?;
+        Ok(machine_files(&self.machine, &machine)?)
+    }
+
     /// Refuses a machine on which there are no frames; nothing if nobody wants to know.
     pub fn frames(&self) -> anyhow::Result<Option<Frames<'_>>> {
         if !self.speed {
@@ -65,7 +75,7 @@ impl Frames<'_> {
     /// Traces a view of a scene with a method.
     pub fn trace(&mut self, scene: &Scene, view: &ViewJob, chosen: &Chosen) -> anyhow::Result<()> {
         let (space, size) = (ModelSpace::of(scene), self.args.speed_size.map_or(view.size, |Size(width, height)| [width, height]));
-        let camera = ViewJob { size, ..view.clone() }.camera(&space)?;
+        let camera = ViewJob { size, ..view.clone() }.frame(&space)?;
         let (method, _) = chosen.make(scene, &Cache::NONE, &Bars)?;
         let sight = Sight::new(&camera, &space, chosen.delta());
         let bar = progress(camera.batches() as u64, "tracing");

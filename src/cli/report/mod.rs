@@ -43,6 +43,11 @@ impl PageArgs {
         self.page.as_deref().map_or(Ok(()), |path| check_target(path, inputs))
     }
 
+    /// Its file, if one is wanted.
+    pub fn file(&self) -> Option<&Path> {
+        self.page.as_deref()
+    }
+
     /// Writes the page, if one is wanted, of `documents`, which the running command has made of `inputs`.
     pub fn write(&self, documents: Documents, inputs: &[&Path]) -> anyhow::Result<()> {
         let Some(path) = &self.page else { return Ok(()) };

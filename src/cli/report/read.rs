@@ -83,7 +83,7 @@ fn add(all: &mut Documents, files: &mut Vec<PathBuf>, path: &Path) -> anyhow::Re
     };
     let RunInput { name, bytes, xxh3 } = Input::read(path)?.into();
     let name = Path::new(&name).file_name().map_or(name.clone(), |name| name.to_string_lossy().into_owned());
-    all.documents.push(DocumentFacts { kind: kind.to_owned(), name, bytes, xxh3 });
+    all.documents.push(DocumentFacts { kind: kind.to_owned(), name, bytes, xxh3: xxh3.unwrap_or_default() });
     Ok(())
 }
 

@@ -155,7 +155,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let labels: Vec<_> = machines.iter().map(|machine| machine.label.as_str()).collect();
     let files = Files::new(&labels);
     let names = files.names();
-    let open_folder = |out: &PathBuf| RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule);
+    let open_folder = |out: &PathBuf| {
+        let folder = RunFolder::open(out, names.iter().map(String::as_str), &inputs, &args.overrule)?;
+        folder.spares(args.page.file())?;
+        anyhow::Ok(folder)
+    };
     let open = || args.out.as_ref().map(open_folder).transpose();
     let mut targets: Vec<_> = machines.into_iter().map(|machine| Target { machine, compute: args.compute, window: args.window }).collect();
     if args.ease {

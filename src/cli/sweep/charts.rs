@@ -5,6 +5,7 @@ use super::labels::{Setting, labels};
 use crate::cli::simulate::plots::{COLOURS, FONT, LEGEND, TEXT, energy_unit, legend, svg, tick, time_unit, top, wrong};
 use lodray::method::bvh;
 use lodray::report::diagram::{DistanceChart, Line, Spot};
+use lodray::report::plain_name;
 use lodray::report::result::SimResult;
 use lodray::study::Row;
 use plotters::prelude::*;
@@ -83,8 +84,7 @@ fn entry<K: PartialEq, V: Default>(entries: &mut Vec<(K, V)>, key: K) -> &mut V 
 
 /// A file name that is not among `files`, from any text.
 fn unused(files: &[(String, String)], text: &str) -> String {
-    let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
-    let plain = plain.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-");
+    let plain = plain_name(text);
     let names = std::iter::once(format!("{plain}.svg")).chain((2..).map(|k| format!("{plain}-{k}.svg")));
     names.into_iter().find(|name| files.iter().all(|file| file.0 != *name)).unwrap_or_default()
 }

@@ -286,7 +286,7 @@ fn scene(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>, fold
         let wrong = |why: ViewError| source.wrong(spanned.span(), format!("scene {name}: {}", one_line(&why)));
         view.camera(&space).map_err(wrong)?;
     }
-    Ok(SceneJobs { name, origin, content, views, regions })
+    Ok(SceneJobs { name, origin, content, has_mesh: false, views, regions })
 }
 
 /// A place for a model that is not there yet. Its centre is nowhere in particular, so that a camera that is impossible here is so for every model.
@@ -307,6 +307,10 @@ fn regions(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) ->
     let entry = spanned.get_ref();
     let Some(regions) = &entry.regions else { return Ok(Vec::new()) };
     let cone = Camera::cone(entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES), size(source, list, entry)?[1]);
+    let is_finite = |of: &RegionEntry| of.from.iter().chain(&of.to).all(|coordinate| coordinate.is_finite());
+    if !filled(source, regions, "regions")?.iter().all(is_finite) {
+        return Err(source.wrong(regions.span(), "regions: corners must be finite".to_owned()));
+    }
     let region = |of: &RegionEntry| {
         let corner = |by: fn(f64, f64) -> f64| std::array::from_fn(|k| by(of.from[k], of.to[k]));
         RegionJob { lo: corner(f64::min), hi: corner(f64::max), cone }

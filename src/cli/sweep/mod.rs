@@ -10,11 +10,12 @@ use super::bars::Bars;
 use super::cache::CacheArgs;
 use super::common::MAX_THREADS;
 use super::folder::{Overrule, RunFolder, one_run};
-use super::input::{InputArgs, with_input};
+use super::input::{InputArgs, is_found, with_input};
 use super::output::{check_target, print_line, remark, write_file};
 use super::report::PageArgs;
 use super::shard::{Planned, ShardArgs, Study};
 use anyhow::ensure;
+use lodray::method::Over;
 use lodray::report::page::{Documents, Simulation};
 use lodray::study::shards::{Part, gathered};
 use lodray::study::{JobLines, Jobs, Means, Row, SceneJobs, count, csv, sweep_part, sweep_pieces};
@@ -53,8 +54,17 @@ pub struct Args {
     shard: ShardArgs,
 }
 
+/// The jobs of the list; each says whether methods that take either surface are over the mesh that its scene was built from.
+fn listed(args: &Args) -> anyhow::Result<Jobs> {
+    let mut jobs = read_views(&args.jobs)?;
+    if jobs.methods.iter().any(|chosen| chosen.method.over == Over::Either) {
+        jobs.scenes.iter_mut().for_each(|scene| scene.has_mesh = is_found(Path::new(&scene.path()), &args.input));
+    }
+    Ok(jobs)
+}
+
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let jobs = read_views(&args.jobs)?;
+    let jobs = listed(args)?;
     let Some(share) = args.shard.share()? else {
         return results(args, &jobs, |rows| work(args, &jobs, Part::ALL, rows));
     };
@@ -65,7 +75,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// Puts the shards of a run together.
 pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
-    let jobs = read_views(&args.jobs)?;
+    let jobs = listed(args)?;
     let keys = jobs.keys()?;
     let lines = gathered(&args.out, Some(&args.out.join(LINES)), &keys)?;
     results(args, &jobs, |rows| {
@@ -76,7 +86,7 @@ pub fn merge(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// What shards of a run would do.
 pub fn planned(args: &Args) -> anyhow::Result<Planned> {
-    let jobs = read_views(&args.jobs)?;
+    let jobs = listed(args)?;
     let inputs = std::iter::once(&args.jobs).chain(&jobs.files).cloned().collect();
     Planned::new(&args.shard, &args.out, inputs, sweep_pieces(&jobs)?)
 }
@@ -98,6 +108,7 @@ fn results(args: &Args, jobs: &Jobs, fill: impl FnOnce(&mut JobLines<Row>) -> an
     let inputs: Vec<_> = std::iter::once(&args.jobs).chain(&jobs.files).map(PathBuf::as_path).collect();
     args.page.check(&inputs)?;
     let mut folder = RunFolder::open(&args.out, [TABLE], &inputs, &args.overrule)?;
+    folder.spares(args.page.file())?;
     // Refused before there is a file of lines.
     args.cache.cache(Some(&args.out))?;
     let lines = args.out.join(LINES);

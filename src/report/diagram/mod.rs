@@ -19,6 +19,7 @@ pub use raster::png;
 pub use table::{csv, latex, left_out_csv};
 
 use super::error_time::{CostMeasure, ErrorMeasure, ErrorTime, USUAL_ERRORS, verdicts};
+use super::{plain_name, plain_names};
 use rayon::prelude::*;
 
 /// File name and contents.
@@ -32,33 +33,35 @@ pub type Files = Vec<(String, Vec<u8>)>;
 pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeasure]) -> Result<Files, DiagramFault> {
     let mut drawings: Vec<(String, String)> = Vec::new();
     let targets = document.targets();
+    let machines = plain_names(document.machines.iter().map(|machine| machine.label.as_str()));
+    let scenes = plain_names(document.scenes.iter().map(|scene| scene.name.as_str()));
     let suffix = |machine: usize, compute: &str| {
-        if targets.len() == 1 { String::new() } else { format!("-{}-{compute}", document.machines[machine].label) }
+        if targets.len() == 1 { String::new() } else { format!("-{}-{compute}", machines[machine]) }
     };
     for verdict in verdicts(document) {
-        drawings.push((plain(&format!("winners{}", suffix(verdict.machine, &verdict.compute))), winners::winners(&verdict)?));
+        drawings.push((plain_name(&format!("winners{}", suffix(verdict.machine, &verdict.compute))), winners::winners(&verdict)?));
     }
-    for (scene, entry) in document.scenes.iter().enumerate() {
+    for (scene, name) in scenes.iter().enumerate() {
         for (machine, compute) in &targets {
             let (machine, compute) = (*machine, compute.as_str());
             let of = work::Of { document, scene, machine, compute };
             let suffix = suffix(machine, compute);
-            let mut add = |name: String, svg: Option<String>| drawings.extend(svg.map(|svg| (plain(&format!("{name}{suffix}")), svg)));
+            let mut add = |file: String, svg: Option<String>| drawings.extend(svg.map(|svg| (plain_name(&format!("{file}{suffix}")), svg)));
             for error in errors {
                 for cost in costs {
-                    add(format!("{}-{}-{}", entry.name, error.id, cost.id), of.work(error, cost)?);
+                    add(format!("{}-{}-{}", name, error.id, cost.id), of.work(error, cost)?);
                 }
-                add(format!("{}-distance-{}", entry.name, error.id), of.errors_by_distance(error)?);
+                add(format!("{}-distance-{}", name, error.id), of.errors_by_distance(error)?);
             }
             for cost in costs {
-                add(format!("{}-distance-{}", entry.name, cost.id), of.costs_by_distance(cost)?);
+                add(format!("{}-distance-{}", name, cost.id), of.costs_by_distance(cost)?);
             }
             for measure in &size::MEASURES {
-                add(format!("{}-size-{}", entry.name, measure.id), size::by_size(document, scene, (machine, compute), measure)?);
+                add(format!("{}-size-{}", name, measure.id), size::by_size(document, scene, (machine, compute), measure)?);
             }
             for measure in &less::MEASURES {
                 add(
-                    format!("{}-left-out-{}", entry.name, measure.id),
+                    format!("{}-left-out-{}", name, measure.id),
                     less::less(document, scene, (machine, compute), measure, &USUAL_ERRORS[1])?,
                 );
             }
@@ -69,10 +72,4 @@ pub fn diagrams(document: &ErrorTime, errors: &[ErrorMeasure], costs: &[CostMeas
         Ok([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), raster)])
     });
     Ok(files.collect::<Result<Vec<_>, DiagramFault>>()?.into_iter().flatten().collect())
-}
-
-/// A file's name of any text.
-fn plain(text: &str) -> String {
-    let text: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect();
-    text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }

@@ -74,8 +74,9 @@ pub struct RunInput {
     pub name: String,
     /// Its size.
     pub bytes: u64,
-    /// Its checksum: 64 bits, hexadecimal.
-    pub xxh3: String,
+    /// Its checksum: 64 bits, hexadecimal; none of a pipe.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub xxh3: Option<String>,
 }
 
 /// A file that the page was made of.

@@ -3,7 +3,6 @@
 use super::costs::{costs, simulated};
 use super::draw::{Converging, Subject, difference, luminance};
 use super::host::{Timed, host_times};
-use super::names::plain;
 use super::plan::{ErrorTimePlan, Setting};
 use super::row::{BuildTime, Measured};
 use super::stage::{Cameras, Stage};
@@ -13,8 +12,8 @@ use crate::method::{Method, Over, find, packet, reference};
 use crate::picture::{Frame, FullResolution, PictureError, Shader, SurfaceError, error_map, level_map, render, sampled, save_png};
 use crate::rays::{Camera, ModelSpace, Sight};
 use crate::report::error_time::{Appearance, Converged, PictureEntry, Point, SceneEntry, Shift, TraceGrid, ViewEntry};
-use crate::report::inspect;
 use crate::report::result::SimResult;
+use crate::report::{inspect, plain_name};
 use crate::study::{Cache, Chosen, Progress, Shot, StudyError, ViewJob, at_once, busy};
 use image::RgbImage;
 use std::path::Path;
@@ -147,7 +146,7 @@ impl<'a> Bench<'a> {
         let ppd = self.plan.measure.pixels_per_degree;
         let kept = self.plan.sides.iter().copied().filter(|&side| side <= MOST_KEPT).max();
         for &side in &self.plan.sides {
-            let cameras = Cameras { frame: frame.with_samples(side)?, few: few.with_samples(side)? };
+            let cameras = Cameras { frame: frame.with_samples(side)?.in_turn(view.tiles_in_turn), few: few.with_samples(side)? };
             let samples = side * side;
             let full = match side {
                 1 => truth.image.clone(),
@@ -203,7 +202,7 @@ impl<'a> Bench<'a> {
             traces: self.traces(&frame, &settings),
             host: self.host(&frame, &settings),
             builds: self.builds.clone(),
-            left_out: self.left_out(&Cameras { frame, few }, &truth.image, &truth.frame)?,
+            left_out: self.left_out(&Cameras { frame: frame.in_turn(view.tiles_in_turn), few }, &truth.image, &truth.frame)?,
             sizes: if sizes { self.sizes(view)? } else { Vec::new() },
         })
     }
@@ -313,10 +312,10 @@ impl<'a> Bench<'a> {
     fn converged(&self, camera: &Camera, points: &mut [Point], unseen: &[Unseen]) -> Result<Option<Converged>, StudyError> {
         let most = self.plan.measure.most_samples;
         let subject = self.subject();
-        let mut side = 2 * self.plan.sides.iter().copied().max().unwrap_or(1).max(2);
-        if side > most {
+        if most == 0 {
             return Ok(None);
         }
+        let mut side = self.plan.least_converged();
         loop {
             let Converging { picture: drawn, standard_error } = subject.converging(&*self.truth.reference, camera, side)?;
             let picture = drawn.image();
@@ -339,7 +338,7 @@ impl<'a> Bench<'a> {
     /// The steps of a grid of rays of each method, with the setting that it has by default; none of packets, which have no steps of one ray.
     fn traces(&self, camera: &Camera, settings: &[(usize, Setting)]) -> Vec<TraceGrid> {
         // A scene that was generated has no file: commands name the one that it would be written to.
-        let file = if self.path.is_empty() { format!("{}.lod", plain(&self.facts.name)) } else { self.path.clone() };
+        let file = if self.path.is_empty() { format!("{}.lod", plain_name(&self.facts.name)) } else { self.path.clone() };
         let grid = |(at, setting): &(usize, Setting)| {
             let subject = inspect::Subject {
                 scene: self.scene,

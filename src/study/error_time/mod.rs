@@ -6,7 +6,6 @@ mod draw;
 mod host;
 mod less;
 mod measure;
-mod names;
 mod plan;
 mod row;
 mod sizes;
@@ -14,7 +13,7 @@ mod stage;
 
 pub use document::document;
 pub use less::in_machine;
-pub use plan::{ErrorTimePlan, Measure};
+pub use plan::{ErrorTimePlan, Measure, least_converged};
 pub use row::{BuildTime, HostTime, Measured, ViewRow};
 
 use super::error::{StudyError, one_line};
@@ -24,8 +23,8 @@ use super::means::Means;
 use super::shards::{Part, Piece, Pieces, Spent, opening, rays};
 use crate::format::Scene;
 use crate::report::error_time::SceneEntry;
+use crate::report::plain_names;
 use measure::Bench;
-use names::plain;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -62,7 +61,8 @@ pub fn error_time_part(
     let done = rows.done();
     let mut keys = Vec::new();
     let bar = means.progress.begin("views", Some(part.keys.map_or(plan.views(), std::collections::HashSet::len) as u64));
-    for scene in &plan.jobs.scenes {
+    let files = plain_names(plan.jobs.scenes.iter().map(|scene| scene.name.as_str()));
+    for (scene, file) in plan.jobs.scenes.iter().zip(&files) {
         let names = view_keys(plan, scene, is_input_found(scene))?;
         let sized = sized(scene);
         keys.extend(names.iter().cloned());
@@ -85,7 +85,7 @@ pub fn error_time_part(
         (part.spent)(Spent::Opening(&scene.name), begun.elapsed());
         for (k, view, key) in &left {
             let begun = Instant::now();
-            let prefix = format!("{}-{k}", plain(&scene.name));
+            let prefix = format!("{file}-{k}");
             let row = match bench.view(view, folder, &prefix, *k == sized) {
                 Ok(measured) => ViewRow { key: key.clone(), measured: Some(measured), error: None },
                 Err(error) => failure(key, &error),

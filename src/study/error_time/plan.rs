@@ -71,6 +71,11 @@ impl Measure {
     }
 }
 
+/// Samples along a side of a converged picture's pixel, at least, beside pictures with these: twice the most, and never below 4.
+pub fn least_converged(sides: &[u32]) -> u32 {
+    2 * sides.iter().copied().max().unwrap_or(1).max(2)
+}
+
 /// A method with one value of its knob.
 pub(super) struct Setting {
     pub chosen: Chosen,
@@ -132,11 +137,20 @@ impl ErrorTimePlan {
         Ok(all.into_iter().filter_map(new).collect())
     }
 
-    /// Refuses more samples than there can be, before anything is traced.
+    /// Samples along a side of a converged picture's pixel, at least: more than pictures have that are held against it.
+    pub fn least_converged(&self) -> u32 {
+        least_converged(&self.sides)
+    }
+
+    /// Refuses more samples than there can be, and fewer than say anything, before anything is traced.
     ///
     /// # Errors
     /// There are.
     pub fn check(&self) -> Result<(), StudyError> {
+        let (most_samples, least) = (self.measure.most_samples, self.least_converged());
+        if (1..least).contains(&most_samples) {
+            return Err(StudyError::Converged { samples: u64::from(most_samples).pow(2), least: u64::from(least).pow(2) });
+        }
         let most = u64::from(self.sides.iter().copied().max().unwrap_or(1));
         for view in self.jobs.scenes.iter().flat_map(|scene| &scene.views) {
             let [width, height] = view.size.map(|n| u64::from(n) * most);

@@ -19,7 +19,7 @@ impl Bench<'_> {
     pub(super) fn sizes(&self, view: &ViewJob) -> Result<Vec<SizeCosts>, StudyError> {
         let mut all = Vec::new();
         for size in sizes(view.size) {
-            let frame = ViewJob { size, ..view.clone() }.camera(&self.space)?;
+            let frame = ViewJob { size, ..view.clone() }.frame(&self.space)?;
             let defaults = self.defaults(&frame);
             let results = at_once(&defaults, |(at, setting)| simulated(&self.stage(*at, setting), &frame, None));
             for ((_, setting), results) in defaults.iter().zip(results) {

@@ -98,7 +98,7 @@ function runSection(section) {
   const quote = (word) => (/^[\w.,:=\/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
   // Of many, one below the other would hide what comes after.
   const cards = page.runs.map((run) => {
-    const inputs = run.inputs.map((i) => h("div", {}, h("code", {}, i.name), `, ${num(i.bytes)} bytes, XXH3 `, h("code", {}, i.xxh3)));
+    const inputs = run.inputs.map((i) => h("div", {}, h("code", {}, i.name), ...(i.xxh3 ? [`, ${num(i.bytes)} bytes, XXH3 `, h("code", {}, i.xxh3)] : [", a pipe"])));
     return h("div", { class: "card" }, facts([["command", h("code", {}, ["lodray", run.command, ...run.arguments].map(quote).join(" "))], ["version", run.lodray], ["inputs", inputs.length ? inputs : null], ["notes", run.notes?.length ? run.notes.map((n) => h("div", {}, n)) : null]]));
   });
   section.append(...(cards.length > 4 ? [h("details", {}, h("summary", {}, count(cards.length, "run")), cards)] : cards));
