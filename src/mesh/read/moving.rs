@@ -203,6 +203,12 @@ mod tests {
         );
         refused(&|root| root["animations"][1]["samplers"][0]["interpolation"] = json!("LINEAR"), "2 times need 1 numbers each, it has 6");
         refused(&|root| root["skins"][0]["joints"] = json!([1]), "vertex 2: joint 1 is out of range, skin 0 has 1");
+        // Joints are whole numbers: no other is cut to one.
+        let joints = |which: usize| format!("JOINTS_0: accessor {which}: it must be VEC4, of 8, 16 or 32 bits without a sign");
+        refused(&|root| root["accessors"][1]["componentType"] = json!(5120), &joints(1));
+        refused(&|root| root["accessors"][1]["normalized"] = json!(true), &joints(1));
+        refused(&|root| root["accessors"][1]["type"] = json!("SCALAR"), &joints(1));
+        refused(&|root| root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(2), &joints(2));
         refused(&|root| root["skins"][0]["joints"] = json!([1, 77]), "skin 0: its joint, node 77, is not in the scene");
         refused(&|root| root["nodes"][0]["skin"] = json!(3), "skin 3: it is not there");
         refused(

@@ -189,14 +189,14 @@ fn skin_of(
     for set in 0.. {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let (Some(which), Some(weights)) = (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set))) else { break };
-        let which = reader.fours(which, vertices, &format!("{place}, JOINTS_{set}"))?;
+        let which = reader.joints(which, vertices, &format!("{place}, JOINTS_{set}"))?;
         let weights = reader.fours(weights, vertices, &format!("{place}, WEIGHTS_{set}"))?;
         if which.len() != vertices || weights.len() != vertices {
             return fault(place, format_args!("it has {vertices} positions, {} joints and {} weights", which.len(), weights.len()));
         }
         for (vertex, (which, weights)) in which.iter().zip(&weights).enumerate() {
             for (&joint, &weight) in which.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-                if joint >= joints.len() as f64 {
+                if joint as usize >= joints.len() {
                     return fault(place, format_args!("vertex {vertex}: joint {joint} is out of range, {own} has {}", joints.len()));
                 }
                 of_vertices[vertex].push((joint as usize, weight));
