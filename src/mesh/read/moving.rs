@@ -151,6 +151,16 @@ mod tests {
         root.to_string().into_bytes()
     }
 
+    /// The file with the second mesh one of 65,535 vertices that all stand at the origin and take no bytes, and with these morph targets; the first animation alone.
+    fn large(targets: Vec<Value>) -> Vec<u8> {
+        file(|root| {
+            let sparse = json!({ "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 0 } });
+            root["accessors"][8] = json!({ "componentType": 5126, "type": "VEC3", "count": 65_535, "sparse": sparse });
+            root["meshes"][1]["primitives"][0]["targets"] = Value::Array(targets);
+            root["animations"].as_array_mut().unwrap().truncate(1);
+        })
+    }
+
     fn read(bytes: &[u8]) -> Result<MovingMesh, ReadError> {
         MovingMesh::from_bytes(bytes, Path::new("m.gltf"), Path::new(""))
     }
@@ -187,6 +197,17 @@ mod tests {
         for (time, weight) in [(0.0, 0.0), (0.25, 0.15625), (0.5, 0.5), (1.0, 1.0), (7.0, 1.0)] {
             near(&mesh.at(1, time)[3..], &[[0.0, 0.0, 2.0 * weight], face[1], face[2]]);
         }
+    }
+
+    #[test]
+    fn morph_targets_take_the_memory_that_they_need() {
+        // Each of these would be 1.5 MB of zeros.
+        let at = read(&large(vec![json!({}); 300_000])).unwrap().at(0, 1.0);
+        assert!(at.len() == 65_538 && at[3..].iter().all(|p| *p == [0.0; 3]));
+        let error = read(&large(vec![json!({ "POSITION": 8 }); 2_000])).unwrap_err().to_string();
+        assert_eq!(error, "m.gltf: mesh 1, primitive 0: with it there are more than 268435456 numbers that move vertices");
+        // Few of them are fine.
+        assert_eq!(read(&large(vec![json!({ "POSITION": 8 }), json!({})])).unwrap().rest().len(), 65_538);
     }
 
     #[test]
