@@ -288,8 +288,8 @@ impl Checker {
             return Ok(if (1..=count).contains(&index) { index } else { 0 });
         }
         if kind == NORMAL && !self.has_normals {
-            // What is named in a file without normals does not matter.
-            return Ok(index);
+            // What is named in a file without normals does not matter, and may be any number.
+            return Ok(0);
         }
         if index == 0 || index < -count || index > i64::from(u32::MAX) {
             return Err(format!("f: {name} index {index} is out of range, {count} came before it"));

@@ -148,7 +148,8 @@ fn obj_texture_indices_need_not_be_there() {
 #[test]
 fn obj_normals_may_be_named_where_there_are_none() {
     let files = Files::new();
-    for face in ["f 1/1/1 2/2/2 3/3/3", "f 1//0 2//-1 3//99"] {
+    let largest = ["f 1//9223372036854775807 2 3", "f 1//-9223372036854775808 2 3", "f 1/9223372036854775807 2/-9223372036854775808 3"];
+    for face in ["f 1/1/1 2/2/2 3/3/3", "f 1//0 2//-1 3//99"].into_iter().chain(largest) {
         let mesh = files.read("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n"));
         assert_eq!((mesh.triangles.len(), mesh.normals.len()), (1, 0), "{face}");
     }
