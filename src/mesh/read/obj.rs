@@ -66,6 +66,13 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     Ok(parts)
 }
 
+/// Positions of its vertices, in the order of their lines. It may have vertices alone; what else it has must be right.
+pub(super) fn positions(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
+    let mut checker = Checker { positions: Some(Vec::new()), ..Checker::default() };
+    checker.lines(bytes)?;
+    Ok(checker.positions.unwrap_or_default())
+}
+
 /// Names of the material libraries.
 pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(bytes);
@@ -111,6 +118,8 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
 #[derive(Default)]
 struct Checker {
     out: String,
+    /// Where vertices are, if that is all that is asked for: then nothing is written out.
+    positions: Option<Vec<[f64; 3]>>,
     has_normals: bool,
     has_texture: bool,
     /// Positions, texture coordinates and normals so far, at their places in [`KINDS`].
@@ -133,6 +142,15 @@ struct Checked {
 impl Checker {
     /// The lines, and what is lost.
     fn check(mut self, bytes: &[u8]) -> Result<Checked, Fault> {
+        let last = self.lines(bytes)?;
+        if self.faces == 0 {
+            return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
+        }
+        Ok(Checked { text: self.out, lost_normals: self.lost_normals, others: self.others })
+    }
+
+    /// Checks all lines, and says how many there are.
+    fn lines(&mut self, bytes: &[u8]) -> Result<usize, Fault> {
         if let Some(at) = bytes.iter().position(|&b| b == 0) {
             let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
             return fault(format_args!("line {line}"), "this is not text");
@@ -162,12 +180,12 @@ impl Checker {
             joined.push_str(line);
             self.line(&joined, number).map_err(at)?;
             joined.clear();
+            if self.positions.is_some() {
+                self.out.clear();
+            }
         }
         if !joined.is_empty() {
             return fault(format_args!("line {last}"), "the file ends in the middle of a continued line");
-        }
-        if self.faces == 0 {
-            return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
         }
         for (kind, name) in KINDS.iter().enumerate() {
             let (index, line) = self.ahead[kind];
@@ -176,7 +194,7 @@ impl Checker {
                 return fault(format_args!("line {line}"), what);
             }
         }
-        Ok(Checked { text: self.out, lost_normals: self.lost_normals, others: self.others })
+        Ok(last)
     }
 
     fn line(&mut self, line: &str, number: usize) -> Result<(), String> {
@@ -214,8 +232,12 @@ impl Checker {
         let kept = if words.len() == 4 { 4 } else { 3 };
         let values: Vec<f64> = words[..kept].iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
         let weight = if words.len() == 4 { values[3] } else { 1.0 };
-        if weight == 0.0 || !values[..3].iter().all(|v| is_coordinate(v / weight)) {
+        let position = [0, 1, 2].map(|k| values[k] / weight);
+        if weight == 0.0 || !position.iter().all(|&v| is_coordinate(v)) {
             return Err(format!("v: {} is not a usable position", shown(&words.join(" "))));
+        }
+        if let Some(positions) = &mut self.positions {
+            positions.push(position);
         }
         _ = writeln!(self.out, "v {}", words[..kept].join(" "));
         self.counts[0] += 1;

@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 
 use super::files::Files;
-use lodray::mesh::{CleanReport, TriangleMesh};
+use lodray::mesh::{CleanReport, TriangleMesh, read_positions};
 
 pub const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -38,6 +38,17 @@ fn obj_coordinates_keep_double_precision() {
     let mut xs: Vec<f64> = mesh.positions.iter().map(|p| p[0]).collect();
     xs.sort_by(f64::total_cmp);
     assert_eq!(xs, [0.0, 0.1, 1.000000000001]);
+}
+
+#[test]
+fn obj_positions_alone_are_those_of_the_mesh() {
+    let files = Files::new();
+    let text = "\u{feff}v 2 4 6 2\nv 1 \\\n0 0\nv 0 1 0 1 1 1 # red\nf 1 2 3\n";
+    let alone = read_positions(&files.write("a.obj", text)).unwrap();
+    assert_eq!((alone.positions, alone.vertices, alone.is_sequence), (files.read("a.obj", text).positions, 3, false));
+    let path = files.write("bad.obj", "v 0 0 0\nv 1 2 3 junk\n");
+    let message = read_positions(&path).unwrap_err().to_string();
+    assert_eq!(message, format!("{}: line 2: v: junk is not a number", path.display()));
 }
 
 /// Twice the area of the triangles, seen from +z, and the sum of the absolute values: equal if none is folded over.
