@@ -1,7 +1,7 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, beside, fault, shown};
+use super::{Fault, Parts, beside, fault, polygon, shown};
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::path::Path;
@@ -18,7 +18,7 @@ const TEXTURE: usize = 1;
 const NORMAL: usize = 2;
 
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
-    let Checked { text, lost_normals, others } = Checker::default().check(bytes)?;
+    let Checked { text, large_faces, lost_normals, others } = Checker::default().check(bytes)?;
     let warnings = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     let library = |name: &Path| {
@@ -60,8 +60,10 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
         let colour = |m: &tobj::Material| m.diffuse.map_or(NO_MATERIAL, |c| c.map(|v| (v as f32).clamp(0.0, 1.0)));
         parts.colours = materials.iter().map(colour).chain([NO_MATERIAL]).collect();
     }
+    // `tobj` keeps the faces in their order.
+    let mut large_faces = large_faces.into_iter();
     for mesh in models.iter().map(|m| &m.mesh) {
-        append(mesh, &mut parts);
+        append(mesh, &mut large_faces, &mut parts)?;
     }
     Ok(parts)
 }
@@ -81,7 +83,8 @@ pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
     names.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
 }
 
-fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
+/// Adds an object; `large_faces` are the lines of those that may be refused.
+fn append(mesh: &tobj::Mesh, large_faces: &mut impl Iterator<Item = usize>, parts: &mut Parts) -> Result<(), Fault> {
     let base = parts.positions.len() as u32;
     parts.positions.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
     let arities = if mesh.face_arities.is_empty() { &vec![3; mesh.indices.len() / 3] } else { &mesh.face_arities };
@@ -97,7 +100,8 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     for &arity in arities {
         let Some(face) = mesh.indices.get(first..first + arity as usize) else { break };
         let corners: Vec<u32> = face.iter().map(|&i| base + i).collect();
-        parts.polygon(&corners, |parts, tri| {
+        let line = if corners.len() > polygon::MAX_EARS { large_faces.next() } else { None };
+        let cut = parts.polygon(&corners, |parts, tri| {
             if !mesh.normals.is_empty() {
                 parts.normals.push(tri.map(|k| normal(first + k)));
             }
@@ -105,12 +109,14 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
                 parts.texture.push(tri.map(|k| texture(first + k)));
             }
         });
+        cut.or_else(|what| fault(line.map_or("faces".to_owned(), |line| format!("line {line}")), what))?;
         first += face.len();
     }
     if !parts.colours.is_empty() {
         let none = parts.colours.len() - 1;
         parts.materials.resize(parts.triangles.len(), mesh.material_id.map_or(none, |m| m.min(none)) as u16);
     }
+    Ok(())
 }
 
 /// Checks all lines and writes out those that a mesh needs in a form that `tobj` reads the same way: indices counted from the beginning and, if the
@@ -125,6 +131,8 @@ struct Checker {
     /// Positions, texture coordinates and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
+    /// Lines of faces with more than [`polygon::MAX_EARS`] corners.
+    large_faces: Vec<usize>,
     /// Normals that are not finite, and lines of [`OTHERS`].
     lost_normals: usize,
     others: usize,
@@ -135,6 +143,7 @@ struct Checker {
 /// The lines that `tobj` reads, and what is lost.
 struct Checked {
     text: String,
+    large_faces: Vec<usize>,
     lost_normals: usize,
     others: usize,
 }
@@ -146,7 +155,7 @@ impl Checker {
         if self.faces == 0 {
             return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
         }
-        Ok(Checked { text: self.out, lost_normals: self.lost_normals, others: self.others })
+        Ok(Checked { text: self.out, large_faces: self.large_faces, lost_normals: self.lost_normals, others: self.others })
     }
 
     /// Checks all lines, and says how many there are.
@@ -294,6 +303,9 @@ impl Checker {
         }
         self.out.push('\n');
         self.faces += 1;
+        if words.len() > polygon::MAX_EARS {
+            self.large_faces.push(line);
+        }
         Ok(())
     }
 

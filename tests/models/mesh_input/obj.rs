@@ -79,6 +79,25 @@ fn concave_polygons_are_cut_without_folding() {
     }
 }
 
+/// Points on a circle; every other one nearer to its centre, if it is dented.
+pub fn ring(corners: u32, dented: bool) -> Vec<[f64; 2]> {
+    let radius = |k: u32| if dented && k % 2 == 1 { 0.5 } else { 1.0 };
+    let angle = |k: u32| f64::from(k) / f64::from(corners) * std::f64::consts::TAU;
+    (0..corners).map(|k| [radius(k) * angle(k).cos(), radius(k) * angle(k).sin()]).collect()
+}
+
+#[test]
+fn large_polygons_are_cut_without_folding_or_refused() {
+    let vertices: String = [false, true].iter().flat_map(|&dented| ring(5000, dented)).map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    let face = |from: usize| (from..from + 5000).map(|v| format!(" {v}")).collect::<String>();
+    let good = format!("{vertices}f{}\nf 1 2 5002\n", face(1));
+    let files = Files::new();
+    let mesh = files.read("round.obj", format!("{vertices}f{}\n", face(1)));
+    let (sum, all) = areas(&mesh);
+    assert!(mesh.triangles.len() == 4998 && sum == all && (sum - std::f64::consts::TAU).abs() < 1e-4, "{sum} {all}");
+    files.refuses("dented.obj", format!("{good}f{}\n", face(5001)), &["line 10003: a face of 5000 corners that is not convex"]);
+}
+
 #[test]
 fn obj_objects_are_joined_and_welded() {
     let text = "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no b\nv 1 0 0\nv 1 1 0\nv 0 1 -0\nl 4 5 6\nf 4 5 6\ng c\nf 1 2 5\n";
