@@ -101,12 +101,37 @@ fn nests_too_deep(header: &[u8]) -> bool {
     most > MOST_BRACKETS
 }
 
-/// Whether the sizes of a header's shape have a product: the reader of arrays takes that for granted.
+/// Whether the sizes of a header's shape have a product: the reader of arrays takes that for granted. It is asked of every list of numbers: which of
+/// them is the shape is not told by a word, as there may be more than one such key, written in many ways.
 fn is_countable(header: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(header);
-    let shape = text.split_once("shape").and_then(|(_, rest)| rest.split_once('(')?.1.split_once(')')).map_or("", |(shape, _)| shape);
-    let sizes = shape.split(',').map(|size| size.trim().trim_end_matches('L')).filter(|size| !size.is_empty());
-    sizes.map(|size| size.parse::<u64>().ok()).try_fold(1u64, |all, size| all.checked_mul(size?.max(1))).is_some()
+    let text = without_strings(&String::from_utf8_lossy(header));
+    text.split(['(', ')', '[', ']', '{', '}']).all(|list| {
+        let words = list.split([',', ':', ' ', '\t', '\n', '\x0c']).map(|word| word.trim_end_matches('L'));
+        let numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit() || c == '+' || c == '-'));
+        // Sums are none that a shape has.
+        let mut sizes = numbers.map(|word| word.parse::<u64>().ok().filter(|_| !word.starts_with('+')));
+        sizes.try_fold(1u64, |all, size| all.checked_mul(size?.max(1))).is_some()
+    })
+}
+
+/// A header with a blank in place of each of its strings.
+fn without_strings(header: &str) -> String {
+    let mut out = String::with_capacity(header.len());
+    let mut rest = header.chars();
+    while let Some(first) = rest.next() {
+        if !matches!(first, '\'' | '"') {
+            out.push(first);
+            continue;
+        }
+        out.push(' ');
+        while let Some(inner) = rest.next().filter(|&inner| inner != first) {
+            // Behind a back-slash a quote ends nothing.
+            if inner == '\\' {
+                _ = rest.next();
+            }
+        }
+    }
+    out
 }
 
 #[cfg(test)]
@@ -131,6 +156,25 @@ mod tests {
             let said = why(&format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n"));
             assert_eq!(said, "an array of a shape that cannot be");
         }
+        for [descr, shape] in [
+            ["'descr': [('shape(1)', '<f8')]", "'shape': (9223372036854775807, 8)"],
+            ["'descr': [('\\'shape\\': (1)', '<f8')]", "'shape': (9223372036854775807, 8)"],
+            ["'descr': '<f8', 'shape': (1,)", "'shape': (9223372036854775807, 8)"],
+            ["'descr': '<f8'", "\"sh\\x61pe\": [9223372036854775807, 8]"],
+            ["'descr': '<f8'", "'shape': (4294967295 +1, 4294967295 + 1)"],
+            ["'descr': '<f8'", "'shape': (0x7fffffffffffffff, 8)"],
+        ] {
+            let said = why(&format!("{{{descr}, 'fortran_order': False, {shape}, }}\n"));
+            assert_eq!(said, "an array of a shape that cannot be", "{descr}, {shape}");
+        }
+    }
+
+    #[test]
+    fn numbers_in_strings_and_types_are_no_sizes() {
+        let descr = "[('9223372036854775807, 8', '<f4', (4294967295,)), (\"it's (+1\", '<i4', (4294967295, 2))]";
+        let text = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (5, 3), }}\n");
+        let bytes = head(1, &(text.len() as u16).to_le_bytes(), &text);
+        assert_eq!(open_array(bytes.as_slice()).unwrap().shape(), [5, 3]);
     }
 
     #[test]

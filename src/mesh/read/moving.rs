@@ -151,6 +151,16 @@ mod tests {
         root.to_string().into_bytes()
     }
 
+    /// The file with the second mesh one of 65,535 vertices that all stand at the origin and take no bytes, and with these morph targets; the first animation alone.
+    fn large(targets: Vec<Value>) -> Vec<u8> {
+        file(|root| {
+            let sparse = json!({ "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 0 } });
+            root["accessors"][8] = json!({ "componentType": 5126, "type": "VEC3", "count": 65_535, "sparse": sparse });
+            root["meshes"][1]["primitives"][0]["targets"] = Value::Array(targets);
+            root["animations"].as_array_mut().unwrap().truncate(1);
+        })
+    }
+
     fn read(bytes: &[u8]) -> Result<MovingMesh, ReadError> {
         MovingMesh::from_bytes(bytes, Path::new("m.gltf"), Path::new(""))
     }
@@ -190,6 +200,17 @@ mod tests {
     }
 
     #[test]
+    fn morph_targets_take_the_memory_that_they_need() {
+        // Each of these would be 1.5 MB of zeros.
+        let at = read(&large(vec![json!({}); 300_000])).unwrap().at(0, 1.0);
+        assert!(at.len() == 65_538 && at[3..].iter().all(|p| *p == [0.0; 3]));
+        let error = read(&large(vec![json!({ "POSITION": 8 }); 2_000])).unwrap_err().to_string();
+        assert_eq!(error, "m.gltf: mesh 1, primitive 0: with it there are more than 268435456 numbers that move vertices");
+        // Few of them are fine.
+        assert_eq!(read(&large(vec![json!({ "POSITION": 8 }), json!({})])).unwrap().rest().len(), 65_538);
+    }
+
+    #[test]
     fn what_is_wrong_is_named() {
         let refused = |change: &dyn Fn(&mut Value), words: &str| {
             let error = read(&file(|root| change(root))).expect_err(words).to_string();
@@ -203,6 +224,12 @@ mod tests {
         );
         refused(&|root| root["animations"][1]["samplers"][0]["interpolation"] = json!("LINEAR"), "2 times need 1 numbers each, it has 6");
         refused(&|root| root["skins"][0]["joints"] = json!([1]), "vertex 2: joint 1 is out of range, skin 0 has 1");
+        // Joints are whole numbers: no other is cut to one.
+        let joints = |which: usize| format!("JOINTS_0: accessor {which}: it must be VEC4, of 8, 16 or 32 bits without a sign");
+        refused(&|root| root["accessors"][1]["componentType"] = json!(5120), &joints(1));
+        refused(&|root| root["accessors"][1]["normalized"] = json!(true), &joints(1));
+        refused(&|root| root["accessors"][1]["type"] = json!("SCALAR"), &joints(1));
+        refused(&|root| root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(2), &joints(2));
         refused(&|root| root["skins"][0]["joints"] = json!([1, 77]), "skin 0: its joint, node 77, is not in the scene");
         refused(&|root| root["nodes"][0]["skin"] = json!(3), "skin 3: it is not there");
         refused(

@@ -1,7 +1,7 @@
 //! Wavefront OBJ. `tobj` parses; before it every line is checked here, because its errors name no line and it lets some faults pass.
 
 use super::super::clean::{is_coordinate, unit};
-use super::{Fault, Parts, beside, fault, shown};
+use super::{Fault, Parts, beside, fault, polygon, shown};
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::path::Path;
@@ -18,7 +18,7 @@ const TEXTURE: usize = 1;
 const NORMAL: usize = 2;
 
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
-    let Checked { text, lost_normals, others } = Checker::default().check(bytes)?;
+    let Checked { text, large_faces, lost_normals, others } = Checker::default().check(bytes)?;
     let warnings = RefCell::new(Vec::new());
     let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     let library = |name: &Path| {
@@ -60,10 +60,19 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
         let colour = |m: &tobj::Material| m.diffuse.map_or(NO_MATERIAL, |c| c.map(|v| (v as f32).clamp(0.0, 1.0)));
         parts.colours = materials.iter().map(colour).chain([NO_MATERIAL]).collect();
     }
+    // `tobj` keeps the faces in their order.
+    let mut large_faces = large_faces.into_iter();
     for mesh in models.iter().map(|m| &m.mesh) {
-        append(mesh, &mut parts);
+        append(mesh, &mut large_faces, &mut parts)?;
     }
     Ok(parts)
+}
+
+/// Positions of its vertices, in the order of their lines. It may have vertices alone; what else it has must be right.
+pub(super) fn positions(bytes: &[u8]) -> Result<Vec<[f64; 3]>, Fault> {
+    let mut checker = Checker { positions: Some(Vec::new()), ..Checker::default() };
+    checker.lines(bytes)?;
+    Ok(checker.positions.unwrap_or_default())
 }
 
 /// Names of the material libraries.
@@ -74,7 +83,8 @@ pub(super) fn libraries(bytes: &[u8]) -> Vec<String> {
     names.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
 }
 
-fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
+/// Adds an object; `large_faces` are the lines of those that may be refused.
+fn append(mesh: &tobj::Mesh, large_faces: &mut impl Iterator<Item = usize>, parts: &mut Parts) -> Result<(), Fault> {
     let base = parts.positions.len() as u32;
     parts.positions.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
     let arities = if mesh.face_arities.is_empty() { &vec![3; mesh.indices.len() / 3] } else { &mesh.face_arities };
@@ -90,7 +100,8 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
     for &arity in arities {
         let Some(face) = mesh.indices.get(first..first + arity as usize) else { break };
         let corners: Vec<u32> = face.iter().map(|&i| base + i).collect();
-        parts.polygon(&corners, |parts, tri| {
+        let line = if corners.len() > polygon::MAX_EARS { large_faces.next() } else { None };
+        let cut = parts.polygon(&corners, |parts, tri| {
             if !mesh.normals.is_empty() {
                 parts.normals.push(tri.map(|k| normal(first + k)));
             }
@@ -98,12 +109,14 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
                 parts.texture.push(tri.map(|k| texture(first + k)));
             }
         });
+        cut.or_else(|what| fault(line.map_or("faces".to_owned(), |line| format!("line {line}")), what))?;
         first += face.len();
     }
     if !parts.colours.is_empty() {
         let none = parts.colours.len() - 1;
         parts.materials.resize(parts.triangles.len(), mesh.material_id.map_or(none, |m| m.min(none)) as u16);
     }
+    Ok(())
 }
 
 /// Checks all lines and writes out those that a mesh needs in a form that `tobj` reads the same way: indices counted from the beginning and, if the
@@ -111,11 +124,15 @@ fn append(mesh: &tobj::Mesh, parts: &mut Parts) {
 #[derive(Default)]
 struct Checker {
     out: String,
+    /// Where vertices are, if that is all that is asked for: then nothing is written out.
+    positions: Option<Vec<[f64; 3]>>,
     has_normals: bool,
     has_texture: bool,
     /// Positions, texture coordinates and normals so far, at their places in [`KINDS`].
     counts: [i64; 3],
     faces: usize,
+    /// Lines of faces with more than [`polygon::MAX_EARS`] corners.
+    large_faces: Vec<usize>,
     /// Normals that are not finite, and lines of [`OTHERS`].
     lost_normals: usize,
     others: usize,
@@ -126,6 +143,7 @@ struct Checker {
 /// The lines that `tobj` reads, and what is lost.
 struct Checked {
     text: String,
+    large_faces: Vec<usize>,
     lost_normals: usize,
     others: usize,
 }
@@ -133,6 +151,15 @@ struct Checked {
 impl Checker {
     /// The lines, and what is lost.
     fn check(mut self, bytes: &[u8]) -> Result<Checked, Fault> {
+        let last = self.lines(bytes)?;
+        if self.faces == 0 {
+            return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
+        }
+        Ok(Checked { text: self.out, large_faces: self.large_faces, lost_normals: self.lost_normals, others: self.others })
+    }
+
+    /// Checks all lines, and says how many there are.
+    fn lines(&mut self, bytes: &[u8]) -> Result<usize, Fault> {
         if let Some(at) = bytes.iter().position(|&b| b == 0) {
             let line = 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count();
             return fault(format_args!("line {line}"), "this is not text");
@@ -162,12 +189,12 @@ impl Checker {
             joined.push_str(line);
             self.line(&joined, number).map_err(at)?;
             joined.clear();
+            if self.positions.is_some() {
+                self.out.clear();
+            }
         }
         if !joined.is_empty() {
             return fault(format_args!("line {last}"), "the file ends in the middle of a continued line");
-        }
-        if self.faces == 0 {
-            return fault(format_args!("line {last}"), "the file ends without a face (no line begins with f)");
         }
         for (kind, name) in KINDS.iter().enumerate() {
             let (index, line) = self.ahead[kind];
@@ -176,7 +203,7 @@ impl Checker {
                 return fault(format_args!("line {line}"), what);
             }
         }
-        Ok(Checked { text: self.out, lost_normals: self.lost_normals, others: self.others })
+        Ok(last)
     }
 
     fn line(&mut self, line: &str, number: usize) -> Result<(), String> {
@@ -214,8 +241,12 @@ impl Checker {
         let kept = if words.len() == 4 { 4 } else { 3 };
         let values: Vec<f64> = words[..kept].iter().map(|w| number("v", w)).collect::<Result<_, _>>()?;
         let weight = if words.len() == 4 { values[3] } else { 1.0 };
-        if weight == 0.0 || !values[..3].iter().all(|v| is_coordinate(v / weight)) {
+        let position = [0, 1, 2].map(|k| values[k] / weight);
+        if weight == 0.0 || !position.iter().all(|&v| is_coordinate(v)) {
             return Err(format!("v: {} is not a usable position", shown(&words.join(" "))));
+        }
+        if let Some(positions) = &mut self.positions {
+            positions.push(position);
         }
         _ = writeln!(self.out, "v {}", words[..kept].join(" "));
         self.counts[0] += 1;
@@ -272,6 +303,9 @@ impl Checker {
         }
         self.out.push('\n');
         self.faces += 1;
+        if words.len() > polygon::MAX_EARS {
+            self.large_faces.push(line);
+        }
         Ok(())
     }
 
@@ -288,8 +322,8 @@ impl Checker {
             return Ok(if (1..=count).contains(&index) { index } else { 0 });
         }
         if kind == NORMAL && !self.has_normals {
-            // What is named in a file without normals does not matter.
-            return Ok(index);
+            // What is named in a file without normals does not matter, and may be any number.
+            return Ok(0);
         }
         if index == 0 || index < -count || index > i64::from(u32::MAX) {
             return Err(format!("f: {name} index {index} is out of range, {count} came before it"));

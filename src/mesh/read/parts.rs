@@ -21,18 +21,22 @@ pub(super) struct Parts {
 
 impl Parts {
     /// Cuts the polygon with these vertices into triangles, each told to `each` by places among the corners. Files of triangles alone have no polygons.
-    pub fn polygon(&mut self, corners: &[u32], mut each: impl FnMut(&mut Self, [usize; 3])) {
+    ///
+    /// # Errors
+    /// It cannot be cut.
+    pub fn polygon(&mut self, corners: &[u32], mut each: impl FnMut(&mut Self, [usize; 3])) -> Result<(), String> {
         let first = self.triangles.len();
         if corners.len() > 3 && self.polygons.is_empty() {
             self.polygons = (0..first as u32).collect(); // indices are 32 bits
         }
         let mut cut = Vec::with_capacity(corners.len());
-        polygon::triangulate(&self.positions, corners, |tri| cut.push(tri));
+        polygon::triangulate(&self.positions, corners, |tri| cut.push(tri))?;
         let number = self.polygons.last().map(|last| last + 1);
         for tri in cut {
             self.triangles.push(tri.map(|k| corners[k]));
             self.polygons.extend(number.or((corners.len() > 3).then_some(0)));
             each(self, tri);
         }
+        Ok(())
     }
 }

@@ -1,17 +1,24 @@
 //! Polygons to triangles: a fan where it is right, ears where the polygon is not convex.
 
-/// Beyond this many corners ear cutting, which is quadratic, gives way to a plain fan.
-const MAX_EARS: usize = 4096;
+/// Most corners of a polygon that a fan does not fit: the time to cut its ears grows with their number cubed, at worst.
+pub(super) const MAX_EARS: usize = 4096;
 
 /// Gives the triangles of the polygon with these vertices, three or more, one by one to `out`: as places in `corners`.
-pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], mut out: impl FnMut([usize; 3])) {
-    let fan = |out: &mut dyn FnMut([usize; 3])| (1..corners.len() - 1).for_each(|k| out([0, k, k + 1]));
-    if corners.len() <= 3 || corners.len() > MAX_EARS {
-        return fan(&mut out);
+///
+/// # Errors
+/// It is not convex and has more than [`MAX_EARS`] corners.
+pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], mut out: impl FnMut([usize; 3])) -> Result<(), String> {
+    if corners.len() <= 3 {
+        out([0, 1, 2]);
+        return Ok(());
     }
     let flat = project(positions, corners);
     if (1..corners.len() - 1).all(|k| area(flat[0], flat[k], flat[k + 1]) > 0.0) {
-        return fan(&mut out);
+        (1..corners.len() - 1).for_each(|k| out([0, k, k + 1]));
+        return Ok(());
+    }
+    if corners.len() > MAX_EARS {
+        return Err(format!("a face of {} corners that is not convex cannot be cut into triangles: one of {MAX_EARS} can", corners.len()));
     }
     let mut left: Vec<usize> = (0..corners.len()).collect();
     while left.len() > 3 {
@@ -21,6 +28,7 @@ pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], mut out: impl
         left.remove(ear);
     }
     out([left[0], left[1], left[2]]);
+    Ok(())
 }
 
 fn neighbours(left: &[usize], k: usize) -> [usize; 3] {

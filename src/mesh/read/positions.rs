@@ -1,7 +1,7 @@
 //! Positions of vertices alone, in the order of a file: for meshes of which everything else is known.
 
 use super::header::{floats, open_array, shape_and_type};
-use super::{MeshFormat, ReadError, is_device, ply};
+use super::{Fault, MeshFormat, ReadError, fault, is_device, obj, ply};
 use npyz::{DType, Order, TypeChar};
 use std::io::Error;
 use std::path::Path;
@@ -17,26 +17,27 @@ pub struct PositionFrames {
     pub is_sequence: bool,
 }
 
-/// Reads them: `.npy`, an array of vertices x 3 or frames x vertices x 3 floats; `.obj`, its `v` lines; `.ply`, its vertices. Nothing is welded and nothing left out.
+/// Reads them: `.npy`, an array of vertices x 3 or frames x vertices x 3 floats; `.obj`, its `v` lines, which need no faces beside them; `.ply`, its vertices. OBJ and PLY are read as by [`read`](super::read), but nothing is welded and nothing left out.
 ///
 /// # Errors
 /// The file cannot be read, or holds something else: it, and line or element, are named.
 pub fn read_positions(path: &Path) -> Result<PositionFrames, ReadError> {
     let io = |source| ReadError::Io { path: path.into(), source };
-    let content = |place: String, what: String| ReadError::Content { path: path.into(), place, what };
+    let content = |Fault { place, what }| ReadError::Content { path: path.into(), place, what };
     let is_array = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npy"));
     let format = MeshFormat::of(path);
     if !is_array && !matches!(format, Some(MeshFormat::Obj | MeshFormat::Ply)) {
-        return Err(content("name".into(), "positions are read from .npy, .obj or .ply".into()));
+        return fault("name", "positions are read from .npy, .obj or .ply").map_err(content);
     }
     let bytes = if is_device(path) { Err(Error::other("it is a device, not a file")) } else { std::fs::read(path) }.map_err(io)?;
     if is_array {
-        return array(&bytes).map_err(|what| content("array".into(), what));
+        return array(&bytes).or_else(|what| fault("array", what)).map_err(content);
     }
     let positions = match format {
-        Some(MeshFormat::Obj) => lines(&bytes).map_err(|(line, what)| content(format!("line {line}"), what))?,
-        _ => ply::parse(&bytes, Path::new("")).map_err(|fault| content(fault.place, fault.what))?.positions,
+        Some(MeshFormat::Obj) => obj::positions(&bytes),
+        _ => ply::parse(&bytes, Path::new("")).map(|parts| parts.positions),
     };
+    let positions = positions.map_err(content)?;
     Ok(PositionFrames { vertices: positions.len(), positions, is_sequence: false })
 }
 
@@ -64,31 +65,20 @@ fn array(bytes: &[u8]) -> Result<PositionFrames, String> {
     Ok(PositionFrames { positions: values.as_chunks::<3>().0.to_vec(), vertices: vertices as usize, is_sequence })
 }
 
-/// The `v` lines of an OBJ; the error has the line's number.
-fn lines(bytes: &[u8]) -> Result<Vec<[f64; 3]>, (usize, String)> {
-    let text = String::from_utf8_lossy(bytes);
-    let vertices = text.lines().zip(1..).filter_map(|(line, number)| {
-        let mut words = line.split_whitespace();
-        (words.next() == Some("v")).then(|| {
-            let mut next = || words.next().and_then(|word| word.parse().ok());
-            match (next(), next(), next()) {
-                (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-                _ => Err((number, "a vertex needs three numbers".to_owned())),
-            }
-        })
-    });
-    vertices.collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn vertices_of_an_obj_keep_their_order_and_their_doubles() {
-        let read = lines(b"o a\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nvn 0 0 1\nv 1 0 0\nf 3 1 2\nv 1e-3 -2 .5\n");
-        assert_eq!(read, Ok(vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1e-3, -2.0, 0.5]]));
-        assert_eq!(lines(b"v 0 0 0\nv 0 0\n").unwrap_err().0, 2);
-        assert_eq!(lines(b"v 0 x 0\n").unwrap_err().0, 1);
+        let read = obj::positions(b"o a\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nvn 0 0 1\nv 1 0 0\nf 3 1 2\nv 1e-3 -2 .5\n").unwrap();
+        assert_eq!(read, [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1e-3, -2.0, 0.5]]);
+        // A mark of the byte order, a weight, a line that goes on.
+        assert_eq!(obj::positions("\u{feff}v 2 4 6 2\nv 1 \\\n 2 3\n".as_bytes()).unwrap(), [[1.0, 2.0, 3.0]; 2]);
+        let bad =
+            [("v 0 0 0\nv 0 0\n", 2), ("v 0 x 0\n", 1), ("v 0 0 \\\n0\nv 1 2 3 junk\n", 3), ("v 0 nan 0\n", 1), ("v 0 0 0\nf 1 1 2\n", 2)];
+        for (text, line) in bad {
+            assert_eq!(obj::positions(text.as_bytes()).unwrap_err().place, format!("line {line}"), "{text}");
+        }
     }
 }

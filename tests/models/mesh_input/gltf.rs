@@ -294,6 +294,7 @@ fn bad_gltf_files_are_named_with_the_place() {
     bad("/accessors/1/count", json!(3), &["mesh 0, primitive 0", "4 positions and 3 normals"]);
     bad("/accessors/2/componentType", json!(F32), &["mesh 0, primitive 0, indices: accessor 2", "without a sign"]);
     bad("/accessors/2/type", json!("VEC3"), &["mesh 0, primitive 0, indices: accessor 2", "SCALAR"]);
+    bad("/accessors/2/normalized", json!(true), &["mesh 0, primitive 0, indices: accessor 2", "not normalized"]);
     bad("/accessors/2/count", json!(4), &["4 corners are not a whole number of triangles"]);
     bad("/meshes/0/primitives/0/indices", json!(3), &["indices: accessor 3: it is not there"]);
     bad("/meshes/0/primitives/0/attributes", json!({}), &["mesh 0, primitive 0: it has no attribute POSITION"]);

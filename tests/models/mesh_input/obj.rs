@@ -1,7 +1,7 @@
 //! Wavefront OBJ.
 
 use super::files::Files;
-use lodray::mesh::{CleanReport, TriangleMesh};
+use lodray::mesh::{CleanReport, TriangleMesh, read_positions};
 
 pub const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -40,6 +40,17 @@ fn obj_coordinates_keep_double_precision() {
     assert_eq!(xs, [0.0, 0.1, 1.000000000001]);
 }
 
+#[test]
+fn obj_positions_alone_are_those_of_the_mesh() {
+    let files = Files::new();
+    let text = "\u{feff}v 2 4 6 2\nv 1 \\\n0 0\nv 0 1 0 1 1 1 # red\nf 1 2 3\n";
+    let alone = read_positions(&files.write("a.obj", text)).unwrap();
+    assert_eq!((alone.positions, alone.vertices, alone.is_sequence), (files.read("a.obj", text).positions, 3, false));
+    let path = files.write("bad.obj", "v 0 0 0\nv 1 2 3 junk\n");
+    let message = read_positions(&path).unwrap_err().to_string();
+    assert_eq!(message, format!("{}: line 2: v: junk is not a number", path.display()));
+}
+
 /// Twice the area of the triangles, seen from +z, and the sum of the absolute values: equal if none is folded over.
 fn areas(mesh: &TriangleMesh) -> (f64, f64) {
     mesh.triangles.iter().fold((0.0, 0.0), |(s, a), t| {
@@ -66,6 +77,25 @@ fn concave_polygons_are_cut_without_folding() {
         assert_eq!(mesh.triangles.len(), corners.len() - 2);
         assert_eq!(areas(&mesh), (2.0 * area, 2.0 * area));
     }
+}
+
+/// Points on a circle; every other one nearer to its centre, if it is dented.
+pub fn ring(corners: u32, dented: bool) -> Vec<[f64; 2]> {
+    let radius = |k: u32| if dented && k % 2 == 1 { 0.5 } else { 1.0 };
+    let angle = |k: u32| f64::from(k) / f64::from(corners) * std::f64::consts::TAU;
+    (0..corners).map(|k| [radius(k) * angle(k).cos(), radius(k) * angle(k).sin()]).collect()
+}
+
+#[test]
+fn large_polygons_are_cut_without_folding_or_refused() {
+    let vertices: String = [false, true].iter().flat_map(|&dented| ring(5000, dented)).map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    let face = |from: usize| (from..from + 5000).map(|v| format!(" {v}")).collect::<String>();
+    let good = format!("{vertices}f{}\nf 1 2 5002\n", face(1));
+    let files = Files::new();
+    let mesh = files.read("round.obj", format!("{vertices}f{}\n", face(1)));
+    let (sum, all) = areas(&mesh);
+    assert!(mesh.triangles.len() == 4998 && sum == all && (sum - std::f64::consts::TAU).abs() < 1e-4, "{sum} {all}");
+    files.refuses("dented.obj", format!("{good}f{}\n", face(5001)), &["line 10003: a face of 5000 corners that is not convex"]);
 }
 
 #[test]
@@ -148,7 +178,8 @@ fn obj_texture_indices_need_not_be_there() {
 #[test]
 fn obj_normals_may_be_named_where_there_are_none() {
     let files = Files::new();
-    for face in ["f 1/1/1 2/2/2 3/3/3", "f 1//0 2//-1 3//99"] {
+    let largest = ["f 1//9223372036854775807 2 3", "f 1//-9223372036854775808 2 3", "f 1/9223372036854775807 2/-9223372036854775808 3"];
+    for face in ["f 1/1/1 2/2/2 3/3/3", "f 1//0 2//-1 3//99"].into_iter().chain(largest) {
         let mesh = files.read("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}\n"));
         assert_eq!((mesh.triangles.len(), mesh.normals.len()), (1, 0), "{face}");
     }

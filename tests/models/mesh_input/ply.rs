@@ -1,6 +1,7 @@
 //! Stanford PLY.
 
 use super::files::Files;
+use super::obj::ring;
 
 const PLY_VERTICES: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n";
 
@@ -109,6 +110,19 @@ fn bad_ply_files_are_named_with_the_element() {
         &["element vertex", "no properties"],
     );
     files.refuses("empty.ply", "", &["empty"]);
+}
+
+#[test]
+fn large_ply_polygons_are_cut_or_refused() {
+    let file = |dented: bool| {
+        let head = "ply\nformat ascii 1.0\nelement vertex 5000\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
+        let vertices: String = ring(5000, dented).iter().map(|[x, y]| format!("{x} {y} 0\n")).collect();
+        let face: String = (0..5000).map(|v| format!(" {v}")).collect();
+        format!("{head}{vertices}5000{face}\n")
+    };
+    let files = Files::new();
+    assert_eq!(files.read("round.ply", file(false)).triangles.len(), 4998);
+    files.refuses("dented.ply", file(true), &["line 5010, element face 0: a face of 5000 corners that is not convex"]);
 }
 
 /// The header of a file with these lines in place of its second to last, numbered from 2.

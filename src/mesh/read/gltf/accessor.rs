@@ -31,9 +31,15 @@ impl<'a> Reader<'a> {
         self.rows(index, (Type::Vec2, "VEC2"), zeros, place)
     }
 
-    /// Rows of four, such as rotations, joints and their weights; at most `zeros` if the accessor has no bytes for them.
+    /// Rows of four, such as rotations and weights of joints; at most `zeros` if the accessor has no bytes for them.
     pub(super) fn fours(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[f64; 4]>, Fault> {
         self.rows(index, (Type::Vec4, "VEC4"), zeros, place)
+    }
+
+    /// Joints of vertices, four for each; at most `zeros` if the accessor has no bytes for them.
+    pub(super) fn joints(&self, index: Index<Accessor>, zeros: usize, place: &str) -> Result<Vec<[u32; 4]>, Fault> {
+        let rows = self.whole(index, (Type::Vec4, "VEC4"), zeros);
+        rows.or_else(|what| fault(place, format_args!("accessor {}: {what}", index.value())))
     }
 
     /// Matrices, column by column; at most `zeros` if the accessor has no bytes for them.
@@ -67,20 +73,25 @@ impl<'a> Reader<'a> {
     /// Indices of vertices below `count`.
     pub(super) fn indices(&self, index: Index<Accessor>, count: usize, place: &str) -> Result<Vec<u32>, Fault> {
         let read = || {
-            let accessor = self.accessor(index)?;
-            let kind = component(accessor)?;
-            if accessor.type_ != Checked::Valid(Type::Scalar)
-                || !matches!(kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
-            {
-                return Err("indices must be SCALAR and of 8, 16 or 32 bits without a sign".into());
-            }
-            let values = self.items::<1>(accessor, kind, MAX_ZEROS)?;
-            if let Some((i, [v])) = values.iter().enumerate().find(|(_, [v])| *v >= count as f64) {
+            let indices = self.whole::<1>(index, (Type::Scalar, "SCALAR"), MAX_ZEROS)?.into_flattened();
+            if let Some((i, v)) = indices.iter().enumerate().find(|(_, v)| **v as usize >= count) {
                 return Err(format!("item {i}: vertex index {v} is out of range, there are {count} vertices"));
             }
-            Ok(values.iter().map(|[v]| *v as u32).collect())
+            Ok(indices)
         };
         read().or_else(|what: String| fault(place, format_args!("accessor {}: {what}", index.value())))
+    }
+
+    /// Rows of N numbers that say which: any but whole ones without a sign would be cut to others.
+    fn whole<const N: usize>(&self, index: Index<Accessor>, (kind, name): (Type, &str), zeros: usize) -> Result<Vec<[u32; N]>, String> {
+        let accessor = self.accessor(index)?;
+        let of = component(accessor)?;
+        let is_unsigned = matches!(of, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
+        if accessor.type_ != Checked::Valid(kind) || !is_unsigned || accessor.normalized {
+            return Err(format!("it must be {name}, of 8, 16 or 32 bits without a sign and not normalized"));
+        }
+        let rows = self.items::<N>(accessor, of, zeros)?;
+        Ok(rows.into_iter().map(|row| row.map(|v| v as u32)).collect())
     }
 
     fn accessor(&self, index: Index<Accessor>) -> Result<&'a Accessor, String> {

@@ -24,7 +24,7 @@ const MAGIC: &[u8] = b"glTF";
 /// Colour of what has no material, as the format has it.
 const NO_MATERIAL: [f32; 3] = [1.0; 3];
 
-/// A small file can place a mesh many times: more vertices or triangles than this are refused.
+/// A small file can place a mesh many times, and give each the colours of all its materials: more vertices, triangles or colours than this are refused.
 const MAX_ITEMS: usize = 1 << 28;
 
 pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<Parts, Fault> {
@@ -136,9 +136,13 @@ fn check_asset(root: &Root) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Builds the meshes of a file, one by one or all as one.
 struct Builder<'a> {
     root: &'a Root,
     reader: &'a Reader<'a>,
+    /// Vertices, triangles and colours that the file may still have, in all meshes together.
+    left: [usize; 3],
+    /// What [`Self::finish`] hands out, without colours.
     parts: Parts,
     has_normals: bool,
     has_texture: bool,
@@ -147,15 +151,20 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Nothing yet but the file's materials.
+    /// Nothing yet.
     fn new(root: &'a Root, reader: &'a Reader<'a>) -> Self {
-        let mut parts = Parts::default();
-        if !root.materials.is_empty() {
-            let colour = |factor: [f32; 4]| std::array::from_fn(|k| factor[k].clamp(0.0, 1.0));
-            let own = root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
-            parts.colours = own.chain([NO_MATERIAL]).collect();
+        Self { root, reader, left: [MAX_ITEMS; 3], parts: Parts::default(), has_normals: false, has_texture: false, others: 0 }
+    }
+
+    /// Counts vertices, triangles and colours that are to be kept.
+    fn take(&mut self, items: [usize; 3], place: &str) -> Result<(), Fault> {
+        for (left, items) in self.left.iter_mut().zip(items) {
+            let Some(rest) = left.checked_sub(items) else {
+                return fault(place, format_args!("with it there are more than {MAX_ITEMS} vertices, triangles or colours"));
+            };
+            *left = rest;
         }
-        Self { root, reader, parts, has_normals: false, has_texture: false, others: 0 }
+        Ok(())
     }
 
     /// Adds a mesh where it is placed.
@@ -170,18 +179,25 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// What there is, without what no primitive has.
-    fn finish(mut self) -> Parts {
-        if !self.has_normals {
-            self.parts.normals = Vec::new();
+    /// What was added since the last time, without what no primitive has.
+    fn finish(&mut self) -> Parts {
+        let mut parts = std::mem::take(&mut self.parts);
+        if !self.root.materials.is_empty() {
+            let colour = |factor: [f32; 4]| std::array::from_fn(|k| factor[k].clamp(0.0, 1.0));
+            let own = self.root.materials.iter().map(|m| colour(m.pbr_metallic_roughness.base_color_factor.0));
+            parts.colours = own.chain([NO_MATERIAL]).collect();
         }
-        if !self.has_texture {
-            self.parts.texture = Vec::new();
+        if !std::mem::take(&mut self.has_normals) {
+            parts.normals = Vec::new();
         }
-        if self.others > 0 {
-            self.parts.warnings.push(format!("{} of its primitives are points or lines: only triangles are kept", self.others));
+        if !std::mem::take(&mut self.has_texture) {
+            parts.texture = Vec::new();
         }
-        self.parts
+        let others = std::mem::take(&mut self.others);
+        if others > 0 {
+            parts.warnings.push(format!("{others} of its primitives are points or lines: only triangles are kept"));
+        }
+        parts
     }
 
     fn primitive(&mut self, primitive: &Primitive, weights: Option<&[f32]>, placed: &Placed, place: &str) -> Result<(), Fault> {
@@ -216,9 +232,7 @@ impl<'a> Builder<'a> {
         };
         let triangles = triangles(mode, &corners).or_else(|what| fault(place, what))?;
         let material = self.material(primitive.material, place)?;
-        if self.parts.positions.len() + positions.len() > MAX_ITEMS || self.parts.triangles.len() + triangles.len() > MAX_ITEMS {
-            return fault(place, format_args!("with it there are more than {MAX_ITEMS} vertices or triangles"));
-        }
+        self.take([positions.len(), triangles.len(), 0], place)?;
         self.append(&positions, normals.as_deref(), texture.as_deref(), &triangles, material, placed).or_else(|what| fault(place, what))
     }
 

@@ -8,12 +8,29 @@ use ::gltf::json::accessor::Accessor;
 use ::gltf::json::animation::{Interpolation, Property, Sampler};
 use ::gltf::json::mesh::{Primitive, Semantic};
 use ::gltf::json::validation::Checked;
-use ::gltf::json::{Index, Node, Root};
+use ::gltf::json::{Index, Node, Root, Skin};
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use std::path::Path;
 
-/// Most numbers of all keys of a file's animations.
-const MAX_KEYS: usize = 1 << 26;
+/// Most numbers of all that moves a file's vertices: keys of its animations, morph targets, joints. Many may come from the same few bytes.
+const MAX_NUMBERS: usize = 1 << 28;
+
+/// Numbers of a joint: where it is in `nodes`, and its inverse bind matrix.
+const JOINT: usize = 17;
+
+/// How many numbers that move its vertices a file may still have.
+struct Budget(usize);
+
+impl Budget {
+    /// Counts numbers, best before there is memory for them.
+    fn take(&mut self, numbers: usize, place: &str) -> Result<(), Fault> {
+        let Some(left) = self.0.checked_sub(numbers) else {
+            return fault(place, format_args!("with it there are more than {MAX_NUMBERS} numbers that move vertices"));
+        };
+        self.0 = left;
+        Ok(())
+    }
+}
 
 /// What is needed of a file to say where its vertices are at a time.
 #[derive(Clone, Debug)]
@@ -54,9 +71,9 @@ struct Piece {
     /// Place in `nodes`.
     node: usize,
     positions: Vec<DVec3>,
-    /// Weights of the targets at rest, and how each moves the vertices.
+    /// Weights of the targets at rest, and how each moves the vertices, if it does.
     weights: Vec<f64>,
-    targets: Vec<Vec<DVec3>>,
+    targets: Vec<Option<Vec<DVec3>>>,
     /// Joints as places in `nodes`, each with its inverse bind matrix; of each vertex which of them, and their weights.
     joints: Vec<(usize, DMat4)>,
     skin: Vec<Vec<(usize, f64)>>,
@@ -86,6 +103,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<MovingParts, 
     let nodes = nodes(&root)?;
     let place_of = |number: usize| nodes.iter().position(|node| node.number == number);
     let mut builder = Builder::new(&root, &reader);
+    let mut budget = Budget(MAX_NUMBERS);
     let mut pieces = Vec::new();
     for placed in placed(&root)? {
         builder.mesh(&placed)?;
@@ -93,9 +111,11 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<MovingParts, 
         let weights = placed.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or_default();
         for (i, primitive) in mesh.primitives.iter().enumerate().filter(|(_, primitive)| is_triangles(primitive)) {
             let place = format!("mesh {}, primitive {i}", placed.mesh);
-            let mut piece = piece(&reader, primitive, weights, node, &place)?;
-            if let Some(skin) = root.nodes[placed.node].skin {
-                (piece.joints, piece.skin) = skin_of(&root, &reader, skin.value(), primitive, piece.positions.len(), &place, place_of)?;
+            let mut piece = piece(&reader, primitive, weights, node, &mut budget, &place)?;
+            if let Some(number) = root.nodes[placed.node].skin.map(|skin| skin.value()) {
+                let Some(skin) = root.skins.get(number) else { return fault(format_args!("skin {number}"), "it is not there") };
+                let vertices = piece.positions.len();
+                (piece.joints, piece.skin) = skin_of(&reader, (number, skin), primitive, vertices, &mut budget, &place, place_of)?;
             }
             pieces.push(piece);
         }
@@ -104,7 +124,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<MovingParts, 
     if parts.triangles.is_empty() {
         return fault("scene", "there are no triangles in it");
     }
-    let clips = clips(&root, &reader, &pieces, &nodes, place_of)?;
+    let clips = clips(&root, &reader, &pieces, &nodes, &mut budget, place_of)?;
     Ok(MovingParts { rest: parts.positions, triangles: parts.triangles, clips, nodes, pieces })
 }
 
@@ -134,7 +154,7 @@ fn nodes(root: &Root) -> Result<Vec<Moving>, Fault> {
     Ok(nodes)
 }
 
-fn piece(reader: &Reader, primitive: &Primitive, weights: &[f32], node: usize, place: &str) -> Result<Piece, Fault> {
+fn piece(reader: &Reader, primitive: &Primitive, weights: &[f32], node: usize, budget: &mut Budget, place: &str) -> Result<Piece, Fault> {
     let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
         return fault(place, "it has no attribute POSITION");
     };
@@ -142,17 +162,21 @@ fn piece(reader: &Reader, primitive: &Primitive, weights: &[f32], node: usize, p
         Ok(reader.vectors(index, zeros, place)?.into_iter().map(DVec3::from_array).collect())
     };
     let positions = points(positions, MAX_ZEROS, &format!("{place}, POSITION"))?;
-    let mut targets = Vec::new();
-    for (i, target) in primitive.targets.iter().flatten().enumerate() {
-        let place = format!("{place}, target {i}, POSITION");
-        let by = match target.positions {
-            Some(index) => points(index, positions.len(), &place)?,
-            None => vec![DVec3::ZERO; positions.len()],
+    let all = primitive.targets.as_deref().unwrap_or_default();
+    let moving = all.iter().filter(|target| target.positions.is_some()).count();
+    budget.take((3 * positions.len()).saturating_mul(moving).saturating_add(all.len() + weights.len()), place)?;
+    let mut targets = Vec::with_capacity(all.len());
+    for (i, target) in all.iter().enumerate() {
+        let Some(index) = target.positions else {
+            targets.push(None);
+            continue;
         };
+        let place = format!("{place}, target {i}, POSITION");
+        let by = points(index, positions.len(), &place)?;
         if by.len() != positions.len() {
             return fault(place, format_args!("it has {} items for {} vertices", by.len(), positions.len()));
         }
-        targets.push(by);
+        targets.push(Some(by));
     }
     Ok(Piece { node, positions, weights: weights.iter().copied().map(f64::from).collect(), targets, joints: Vec::new(), skin: Vec::new() })
 }
@@ -161,16 +185,16 @@ fn piece(reader: &Reader, primitive: &Primitive, weights: &[f32], node: usize, p
 type Skinned = (Vec<(usize, DMat4)>, Vec<Vec<(usize, f64)>>);
 
 fn skin_of(
-    root: &Root,
     reader: &Reader,
-    number: usize,
+    (number, skin): (usize, &Skin),
     primitive: &Primitive,
     vertices: usize,
+    budget: &mut Budget,
     place: &str,
     place_of: impl Fn(usize) -> Option<usize>,
 ) -> Result<Skinned, Fault> {
     let own = format!("skin {number}");
-    let Some(skin) = root.skins.get(number) else { return fault(own, "it is not there") };
+    budget.take(JOINT * skin.joints.len(), place)?;
     let bind = match skin.inverse_bind_matrices {
         Some(index) => reader.matrices(index, skin.joints.len(), &own)?,
         None => vec![DMat4::IDENTITY.to_cols_array(); skin.joints.len()],
@@ -189,14 +213,16 @@ fn skin_of(
     for set in 0.. {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let (Some(which), Some(weights)) = (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set))) else { break };
-        let which = reader.fours(which, vertices, &format!("{place}, JOINTS_{set}"))?;
+        // Four joints with their weights for each vertex.
+        budget.take(8 * vertices, place)?;
+        let which = reader.joints(which, vertices, &format!("{place}, JOINTS_{set}"))?;
         let weights = reader.fours(weights, vertices, &format!("{place}, WEIGHTS_{set}"))?;
         if which.len() != vertices || weights.len() != vertices {
             return fault(place, format_args!("it has {vertices} positions, {} joints and {} weights", which.len(), weights.len()));
         }
         for (vertex, (which, weights)) in which.iter().zip(&weights).enumerate() {
             for (&joint, &weight) in which.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-                if joint >= joints.len() as f64 {
+                if joint as usize >= joints.len() {
                     return fault(place, format_args!("vertex {vertex}: joint {joint} is out of range, {own} has {}", joints.len()));
                 }
                 of_vertices[vertex].push((joint as usize, weight));
@@ -218,9 +244,9 @@ fn clips(
     reader: &Reader,
     pieces: &[Piece],
     nodes: &[Moving],
+    budget: &mut Budget,
     place_of: impl Fn(usize) -> Option<usize>,
 ) -> Result<Vec<Clip>, Fault> {
-    let mut left = MAX_KEYS;
     let mut clips = Vec::with_capacity(root.animations.len());
     for (number, animation) in root.animations.iter().enumerate() {
         let place = format!("animation {number}");
@@ -245,7 +271,7 @@ fn clips(
                     _ => continue,
                 },
             };
-            channels.push(sampled(reader, sampler, node, property, width, &mut left, &place)?);
+            channels.push(sampled(reader, sampler, node, property, width, budget, &place)?);
         }
         let duration = channels.iter().filter_map(|channel| channel.times.last()).fold(0.0, |most: f64, &time| most.max(time));
         clips.push(Clip { name: animation.name.clone().unwrap_or_else(|| number.to_string()), duration, channels });
@@ -259,7 +285,7 @@ fn sampled(
     node: usize,
     property: Property,
     width: usize,
-    left: &mut usize,
+    budget: &mut Budget,
     place: &str,
 ) -> Result<Channel, Fault> {
     let Checked::Valid(interpolation) = sampler.interpolation else { return fault(place, "its interpolation is not known") };
@@ -282,10 +308,7 @@ fn sampled(
     if Some(values.len()) != times.len().checked_mul(each) {
         return fault(place, format_args!("{} times need {each} numbers each, it has {}", times.len(), values.len()));
     }
-    *left = match left.checked_sub(times.len() + values.len()) {
-        Some(left) => left,
-        None => return fault(place, format_args!("with it the animations have more than {MAX_KEYS} numbers")),
-    };
+    budget.take(times.len() + values.len(), place)?;
     Ok(Channel { node, property, interpolation, times, width, values })
 }
 
@@ -355,9 +378,11 @@ impl MovingParts {
 impl Piece {
     fn moved(&self, whole: &[DMat4], weights: Option<&[f64]>) -> Vec<[f64; 3]> {
         let joints: Vec<DMat4> = self.joints.iter().map(|(node, bind)| whole[*node] * *bind).collect();
-        let weights = weights.unwrap_or(&self.weights);
+        let weighted = self.targets.iter().zip(weights.unwrap_or(&self.weights));
+        let targets: Vec<(&[DVec3], f64)> =
+            weighted.filter(|(_, weight)| **weight != 0.0).filter_map(|(target, &weight)| Some((target.as_deref()?, weight))).collect();
         let vertex = |v: usize| {
-            let moved: DVec3 = self.targets.iter().zip(weights).map(|(target, &weight)| target[v] * weight).sum();
+            let moved: DVec3 = targets.iter().map(|(target, weight)| target[v] * *weight).sum();
             let p = self.positions[v] + moved;
             // Joints take a vertex to the scene: where its node is does not matter then.
             match self.skin.get(v) {

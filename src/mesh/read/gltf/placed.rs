@@ -32,11 +32,17 @@ pub(in crate::mesh::read) fn parse_placed(bytes: &[u8], folder: &Path) -> Result
 fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<PlacedParts, Fault> {
     let root = root(json)?;
     let reader = Reader::new(&root, bin, folder);
-    let found = placed(&root)?;
+    meshes_and_places(&mut Builder::new(&root, &reader))
+}
+
+/// The same with a builder that has built nothing yet.
+fn meshes_and_places(builder: &mut Builder) -> Result<PlacedParts, Fault> {
+    let root = builder.root;
+    let found = placed(root)?;
     if found.len() > MOST_PLACES {
         return fault("nodes", format_args!("{} with meshes are more than {MOST_PLACES}", found.len()));
     }
-    let mut all = PlacedParts { meshes: Vec::new(), places: Vec::new(), cameras: cameras(&root)?, warnings: Vec::new() };
+    let mut all = PlacedParts { meshes: Vec::new(), places: Vec::new(), cameras: cameras(root)?, warnings: Vec::new() };
     all.warnings.extend(skinned(found.iter().filter(|placed| placed.has_skin).count()));
     // A mesh with other weights of its morph targets is another one.
     let mut known: HashMap<(usize, Option<Vec<u32>>), Option<usize>> = HashMap::new();
@@ -46,7 +52,7 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<PlacedParts, 
         let own = match known.get(&key) {
             Some(own) => *own,
             None => {
-                let own = mesh(&root, &reader, placed, &mut all)?;
+                let own = mesh(builder, placed, &mut all)?;
                 *known.entry(key).or_insert(own)
             }
         };
@@ -62,12 +68,12 @@ fn build(json: &[u8], bin: Option<&[u8]>, folder: &Path) -> Result<PlacedParts, 
 }
 
 /// The number of a mesh that is met for the first time, none if it has no triangles.
-fn mesh(root: &Root, reader: &Reader, placed: Placed, all: &mut PlacedParts) -> Result<Option<usize>, Fault> {
+fn mesh(builder: &mut Builder, placed: Placed, all: &mut PlacedParts) -> Result<Option<usize>, Fault> {
     let number = placed.mesh;
-    let mut builder = Builder::new(root, reader);
     builder.mesh(&Placed { transform: DMat4::IDENTITY, ..placed })?;
     let parts = builder.finish();
-    let name = root.meshes[number].name.clone().unwrap_or_else(|| format!("mesh {number}"));
+    builder.take([0, 0, parts.colours.len()], &format!("mesh {number}"))?;
+    let name = builder.root.meshes[number].name.clone().unwrap_or_else(|| format!("mesh {number}"));
     if parts.triangles.is_empty() {
         all.warnings.push(format!("mesh {number} has no triangles, and is left out"));
         return Ok(None);
@@ -92,4 +98,39 @@ fn cameras(root: &Root) -> Result<Vec<MeshCamera>, Fault> {
         cameras.push(MeshCamera { name, eye: eye.to_array(), target: (eye + target).to_array(), up: up.to_array(), fov });
     }
     Ok(cameras)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+    use serde_json::json;
+
+    #[test]
+    fn meshes_of_a_file_are_counted_together() {
+        let corners: Vec<u8> = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+        // A triangle with other weights of its morph target at each node: three meshes.
+        let file = json!({
+            "asset": { "version": "2.0" },
+            "buffers": [{ "byteLength": 36, "uri": format!("data:;base64,{}", STANDARD.encode(&corners)) }],
+            "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+            "accessors": [{ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 }],
+            "materials": [{}, {}],
+            "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] }] }],
+            "nodes": [{ "mesh": 0 }, { "mesh": 0, "weights": [1.0] }, { "mesh": 0, "weights": [2.0] }],
+            "scenes": [{ "nodes": [0, 1, 2] }],
+        });
+        let root = root(file.to_string().as_bytes()).unwrap();
+        let reader = Reader::new(&root, None, Path::new(""));
+        let meshes = |left| {
+            let mut builder = Builder { left, ..Builder::new(&root, &reader) };
+            meshes_and_places(&mut builder).map(|all| all.meshes.len()).map_err(|Fault { place, what }| format!("{place}: {what}"))
+        };
+        assert_eq!(meshes([9, 3, 9]), Ok(3));
+        for left in [[8, 3, 9], [9, 2, 9], [9, 3, 8]] {
+            let said = meshes(left).unwrap_err();
+            assert!(said.starts_with("mesh 0") && said.contains("more than 268435456 vertices, triangles or colours"), "{said}");
+        }
+    }
 }

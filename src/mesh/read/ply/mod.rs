@@ -250,14 +250,13 @@ fn append(element: &str, indices: &[i64], parts: &mut Parts) -> Result<(), Strin
             return Err(format!("a face needs 3 vertices or more, found {}", indices.len()));
         }
         let corners: Vec<u32> = indices.iter().map(vertex).collect();
-        parts.polygon(&corners, |_, _| {});
-        return Ok(());
+        return parts.polygon(&corners, |_, _| {});
     }
     // -1 ends a strip; every other triangle of a strip is wound the other way.
     for strip in indices.split(|&i| i == -1) {
         for (k, w) in strip.windows(3).enumerate() {
             let [a, b, c] = [vertex(&w[0]), vertex(&w[1]), vertex(&w[2])];
-            parts.polygon(&if k % 2 == 0 { [a, b, c] } else { [b, a, c] }, |_, _| {});
+            parts.polygon(&if k % 2 == 0 { [a, b, c] } else { [b, a, c] }, |_, _| {})?;
         }
     }
     Ok(())
