@@ -389,7 +389,8 @@ fn a_scene_pruned_for_a_region_serves_all_rays_from_there() {
     // Nothing that cannot be.
     for (regions, words) in [
         ("regions = []", ["line 5", "regions must not be empty"]),
-        ("regions = [{ from = [0, 0, 0], to = [inf, 1, 1] }]", ["line 5", "regions: lo and hi must be finite"]),
+        ("regions = [{ from = [0, 0, 0], to = [inf, 1, 1] }]", ["line 5", "regions: from and to must be finite"]),
+        ("regions = [{ from = [nan, 0, 0], to = [1, 1, 1] }]", ["line 5", "regions: from and to must be finite"]),
         ("regions = [{ from = [0, 0, 0] }]", ["line 5", "missing field `to`"]),
     ] {
         desk.write("wrong.toml", &list(regions));

@@ -515,8 +515,11 @@ fn a_description_becomes_pictures_and_figures() {
     for name in ["paths.png", "paths.exr"] {
         assert_eq!(read(&format!("a/{name}")), read(&format!("b/{name}")), "{name}");
     }
-    let png = image::open(folder.path().join("a/full.png")).expect("a picture");
-    assert_eq!((png.width(), png.height()), (24, 16));
+    for name in ["full", "converged"] {
+        let png = image::open(folder.path().join(format!("a/{name}.png"))).expect("a picture");
+        assert_eq!((png.width(), png.height()), (24, 16));
+    }
+    assert_ne!(read("a/full.exr"), read("a/converged.exr"));
     let light = exr::prelude::read_first_rgba_layer_from_file(
         folder.path().join("a/paths.exr"),
         |size, _| vec![[0f32; 3]; size.area()],

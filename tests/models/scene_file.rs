@@ -424,6 +424,18 @@ fn resealed_nonsense_is_refused_with_section_and_field() {
     ] {
         assert!(parts.iter().any(|p| message.contains(p)), "{message}");
     }
+    // Base triangles that are named twice, or that there are none of.
+    let (sources, _) = lodray_test_support::surfaces::section(&good, 8);
+    for (source, words) in [
+        (u32::from_le_bytes(good[sources + 8..][..4].try_into().unwrap()), "is named twice"),
+        (8, "there is no base triangle 8, which tree 0 names"),
+    ] {
+        let mut bytes = good.clone();
+        bytes[sources..][..4].copy_from_slice(&source.to_le_bytes());
+        lodray_test_support::surfaces::reseal(&mut bytes);
+        let message = open(&bytes).unwrap_err();
+        assert!(message.contains("section SOURCES: ") && message.contains(words), "{message}");
+    }
     // A quad-BVH that leads in a circle or nowhere: the root's first inner child, node 1's first leaf, kinds and counts.
     let (nodes, _) = lodray_test_support::surfaces::section(&good, 2);
     for (node, [high, low], value) in [

@@ -249,3 +249,14 @@ fn what_cannot_be_printed_is_an_error_but_not_for_a_closed_pipe() {
         assert!(closed.status.success() && closed.stderr.is_empty(), "{args}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = std::process::Command::new("mkfifo").arg(folder.path().join("x.lod")).status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let said = lodray(folder.path(), "info x.lod");
+    let words = String::from_utf8(said.stderr).unwrap();
+    assert!(said.status.code() == Some(FAILS) && words.contains("x.lod: magic: not a lodray scene file"), "{words}");
+}

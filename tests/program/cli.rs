@@ -70,6 +70,11 @@ fn loop_surfaces_of_meshes() {
         desk.run(&format!("build sheet.obj --subdivide loop --levels 4 --threads {threads} -o again.lod"));
         assert!(fs::read(desk.path("again.lod")).unwrap() == fs::read(desk.path("sheet.lod")).unwrap(), "{threads} threads");
     }
+    desk.refused(
+        "build sheet.obj --subdivide loop --crease-angle 30 -o no.lod",
+        1,
+        &["--crease-angle: loop and catmull-clark have no creases"],
+    );
     // Levels and forms as those of other scenes.
     assert_eq!(desk.json("build sheet.obj --subdivide loop -o default.lod")["levels"], 3);
     let exact = desk.json("build sheet.obj --subdivide loop --levels 2 --vertices exact --coordinate-zeros 4 -o exact.lod");
@@ -509,6 +514,8 @@ fn the_plan_of_a_view_prunes() {
     assert!(said.starts_with("a unit for this has ") && said.lines().next().unwrap().contains(" GE (gate equivalents): "), "{said}");
     assert!(said.contains(" % less\nthan the unit of rtl/, with 4 contexts\n"), "{said}");
     assert!(desk.run("prune a.lod --plan plan.toml -o small.lod").starts_with("2 views; "));
+    desk.refused("plan a.lod -o new --package ./new", 1, &["--package ./new: it is the file of the plan"]);
+    desk.refused("plan a.lod --check plan.toml --json", 2, &["--json"]);
     assert!(fs::metadata(desk.path("small.lod")).unwrap().len() < fs::metadata(desk.path("a.lod")).unwrap().len());
     // The same as a list of jobs says.
     let list = "size = \"64x64\"\ndistances = [8, 16]\nmethods = [\"lod\"]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"packet\"\n";

@@ -254,6 +254,41 @@ fn a_list_of_jobs_says_what_options_say() {
 }
 
 #[test]
+fn what_is_given_in_parts_is_all_measured_and_no_file_replaces_another() {
+    let desk = desk();
+    for name in ["a_b.lod", "a-b.lod"] {
+        std::fs::copy(desk.path("a.lod"), desk.path(name)).unwrap();
+    }
+    let base = "--size 24x24 --distances 3 --methods lod --samples 1 --most-samples 0 --no-host";
+    desk.run(&format!("error-time a_b.lod a-b.lod -o d --values delta=1,2 --values delta=4 --compute free {base}"));
+    let document: Value = serde_json::from_str(&desk.text("d/error-time.json")).unwrap();
+    assert_eq!(points(&document, "lod").count(), 2 * 3);
+    let files: Vec<&str> = document["pictures"].as_array().unwrap().iter().map(|picture| picture["file"].as_str().unwrap()).collect();
+    let names: std::collections::BTreeSet<_> = files.iter().collect();
+    assert!(names.len() == files.len() && files.iter().all(|file| desk.path("d").join(file).is_file()), "{files:?}");
+    let diagrams = desk.files("d").keys().filter(|name| name.ends_with(".svg")).count();
+    desk.run(&format!("error-time a_b.lod -o e --values delta=1,2,4 --compute free {base}"));
+    // Those of each scene, and the map of winners.
+    assert_eq!(diagrams - 1, 2 * (desk.files("e").keys().filter(|name| name.ends_with(".svg")).count() - 1));
+}
+
+#[test]
+fn rays_of_several_tiles_in_turn_cost_what_they_cost_in_simulate() {
+    let desk = desk();
+    desk.write(
+        "list.toml",
+        "size = \"64x64\"\ndistances = [3]\ntiles_in_turn = 4\nmethods = [\"lod\"]\ndeltas = [1]\n[[scene]]\nfile = \"a.lod\"\n[[machine]]\nname = \"haydel2023\"\ncompute = \"units\"\n",
+    );
+    desk.run("error-time --jobs list.toml -o a --samples 1 --most-samples 0 --no-host");
+    let document: Value = serde_json::from_str(&desk.text("a/error-time.json")).unwrap();
+    let cycles =
+        |words: &str| desk.json(&format!("simulate a.lod --size 64x64 --distance 3 --compute units {words}"))["cycles"].as_f64().unwrap();
+    let point = points(&document, "lod").next().unwrap();
+    assert_eq!(number(point, "/costs/0/cycles"), cycles("--tiles-in-turn 4"));
+    assert_ne!(number(point, "/costs/0/cycles"), cycles(""));
+}
+
+#[test]
 fn what_is_wrong_is_refused_before_anything_is_traced() {
     let desk = desk();
     for (args, words) in [
@@ -265,6 +300,10 @@ fn what_is_wrong_is_refused_before_anything_is_traced() {
         ("a.lod --pixels-per-degree 0", &["1 to 1000"]),
         ("a.lod --size 8192x8192 --samples 4", &["--samples 4", "too many"]),
         ("a.lod --distances 0", &["distances"]),
+        ("a.lod --distances 2,4,2", &["--distances: 2 is given twice"]),
+        ("a.lod --machine haydel2023,haydel2023", &["--machine: haydel2023 is given twice"]),
+        ("a.lod --compute free,free", &["--compute: free is given twice"]),
+        ("a.lod --samples 1,16 --most-samples 16", &["--most-samples 16: a converged picture has at least 64 here"]),
         ("a.lod --error-size 0", &["--error-size", "0 is not in 1.."]),
         ("a.lod --within 0", &["--within", "no number of pixels above 0"]),
         ("a.lod --within -1", &["--within", "'-1' is no number of pixels above 0"]),
@@ -275,7 +314,16 @@ fn what_is_wrong_is_refused_before_anything_is_traced() {
     ] {
         desk.refused(
             &format!("error-time {args} -o d"),
-            if words[0] == "a.lod" || words[0] == "none.lod" || words[0] == "--samples 4" || args.ends_with("bvh") { 1 } else { 2 },
+            if words[0] == "a.lod"
+                || words[0] == "none.lod"
+                || words[0] == "--samples 4"
+                || words[0].contains(": ")
+                || args.ends_with("bvh")
+            {
+                1
+            } else {
+                2
+            },
             words,
         );
     }

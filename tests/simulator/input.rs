@@ -77,6 +77,37 @@ fn the_mesh_is_found_by_name_and_hash_or_named() {
 }
 
 #[test]
+fn a_mesh_is_the_same_with_the_files_that_belong_to_it() {
+    let desk = desk();
+    desk.write("red.obj", &format!("mtllib red.mtl\nusemtl red\n{}", mesh(0.05)));
+    desk.write("red.mtl", "newmtl red\nKd 1 0 0\n");
+    desk.refused("build red.obj --levels 3 -o red.mtl", FAILS, &["cannot write red.mtl: it is the input file"]);
+    desk.run("build red.obj --levels 3 -o red.lod");
+    let shot = "simulate red.lod --method input-bvh --size 16x12";
+    desk.run(shot);
+    desk.write("red.mtl", "newmtl red\nKd 0 1 0\n");
+    desk.refused(shot, FAILS, &["red.lod was built from red.obj, and that very file, with the files that belong to it, is neither"]);
+}
+
+#[test]
+fn a_sweep_does_not_keep_what_it_measured_of_another_surface() {
+    let desk = desk();
+    let list = "size = \"32x32\"\ndistances = [3]\nmethods = [\"lod\", \"cluster\"]\n[[scene]]\nfile = \"ball.lod\"\n[[machine]]\nname = \"haydel2023\"\n";
+    desk.write("list.toml", list);
+    std::fs::rename(desk.path("ball.obj"), desk.path("mesh.obj")).unwrap();
+    let run = |words: &str| {
+        let (code, said) = desk.hear(&format!("sweep list.toml -o out {words}"));
+        assert_eq!(code, 0, "{said}");
+        said
+    };
+    let last = |said: &str| said.lines().find(|line| line.starts_with("2 jobs, ")).unwrap().to_owned();
+    assert!(last(&run("")).starts_with("2 jobs, 0 of them done before"));
+    // Clusters are of the mesh now; ours is what it was.
+    assert!(last(&run("--mesh mesh.obj")).starts_with("2 jobs, 1 of them done before"));
+    assert!(last(&run("--mesh mesh.obj")).starts_with("2 jobs, 2 of them done before"));
+}
+
+#[test]
 fn errors_are_against_the_input_where_it_is_at_hand() {
     let desk = desk();
     let measured = |out: &str, words: &str| -> Value {

@@ -225,6 +225,8 @@ fn wrong_words_are_one_clear_error() {
         ("--rlod-every 7", USAGE, "--rlod-every: lod has no such knob; rlod has one"),
         ("--method bvh --delta 1", USAGE, "--delta: bvh has no such knob; "),
         ("-o a.lod", FAILS, "cannot make folder a.lod"),
+        ("-o out --report out/result.json", FAILS, "cannot write out/result.json: it is a file of the run"),
+        ("-o out --report ./out/run.json", FAILS, "cannot write ./out/run.json: it is a file of the run"),
     ] {
         desk.refused(&format!("{SHOT} {args}"), code, &[fragment]);
     }

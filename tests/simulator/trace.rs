@@ -185,6 +185,8 @@ fn ports_are_those_of_a_unit_over_the_scenes_file() {
     assert_eq!(fs::read(desk.join("again.json")).unwrap(), fs::read(desk.join("ray.json")).unwrap());
     fail(desk, &format!("trace a.lod {view} --ports a.lod"), "it is the input file");
     fail(desk, &format!("trace a.lod {view} -o new.vcd --ports new.sucl"), "it is a file of the waveform");
+    fail(desk, &format!("trace a.lod {view} -o new.vcd --ports ./new.vcd"), "it is a file of the waveform");
+    fail(desk, &format!("trace a.lod {view} --plan ray.json --ports ray.json"), "it is the input file");
 }
 
 /// As they lie in memory.

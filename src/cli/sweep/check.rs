@@ -309,7 +309,7 @@ fn regions(source: &ListText<'_>, list: &List, spanned: &Spanned<SceneEntry>) ->
     let cone = Camera::cone(entry.fov.unwrap_or(DEFAULT_VIEW_ANGLE_DEGREES), size(source, list, entry)?[1]);
     let is_finite = |of: &RegionEntry| of.from.iter().chain(&of.to).all(|coordinate| coordinate.is_finite());
     if !filled(source, regions, "regions")?.iter().all(is_finite) {
-        return Err(source.wrong(regions.span(), "regions: corners must be finite".to_owned()));
+        return Err(source.wrong(regions.span(), "regions: from and to must be finite".to_owned()));
     }
     let region = |of: &RegionEntry| {
         let corner = |by: fn(f64, f64) -> f64| std::array::from_fn(|k| by(of.from[k], of.to[k]));

@@ -3,6 +3,9 @@
 /// Most corners of a polygon that a fan does not fit: the time to cut its ears grows with their number cubed, at worst.
 pub(super) const MAX_EARS: usize = 4096;
 
+/// Twice the area that a triangle of so large a polygon's fan may be turned over by: as much as six digits of a round cap's corners leave next to its first one.
+const SLIVER: f64 = -1e-8;
+
 /// Gives the triangles of the polygon with these vertices, three or more, one by one to `out`: as places in `corners`.
 ///
 /// # Errors
@@ -13,7 +16,8 @@ pub(super) fn triangulate(positions: &[[f64; 3]], corners: &[u32], mut out: impl
         return Ok(());
     }
     let flat = project(positions, corners);
-    if (1..corners.len() - 1).all(|k| area(flat[0], flat[k], flat[k + 1]) > 0.0) {
+    let least = if corners.len() > MAX_EARS { SLIVER } else { 0.0 };
+    if (1..corners.len() - 1).all(|k| area(flat[0], flat[k], flat[k + 1]) > least) {
         (1..corners.len() - 1).for_each(|k| out([0, k, k + 1]));
         return Ok(());
     }
