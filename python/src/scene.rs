@@ -3,7 +3,7 @@
 use crate::arrays::{contiguous, knobs, shaped, triples};
 use crate::camera::{Place, PyCamera, camera};
 use crate::error_time::{Study, error_time};
-use crate::errors::{raised, refused};
+use crate::errors::{of_file, raised, refused};
 use crate::method::PySceneMethod;
 use crate::plan::plan;
 use crate::told::{Told, beside};
@@ -70,7 +70,7 @@ impl PyScene {
     /// So nothing may change the file in place while the scene is in use: hits would be wrong, and where it was cut short the process ends.
     /// `Scene.save` under the same name does no harm: it puts another file in its place.
     ///
-    /// Raises LodrayError: there is no such file, or it is damaged.
+    /// Raises LodrayFileError: there is no such file, or it cannot be read; LodrayError: it is damaged.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         Ok(Self(beside(py, None, |_| Scene::open(&path))?.map_err(raised)?))
@@ -92,7 +92,8 @@ impl PyScene {
     /// keep_mesh: keeps the mesh too, for the methods over it (input-bvh and others).
     /// progress: called now and then as progress(what, done, of).
     ///
-    /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so.
+    /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so;
+    /// LodrayFileError: a file that cannot be read.
     #[staticmethod]
     #[pyo3(signature = (mesh, faces=None, *, max_error=None, levels=None, base=None, crease_angle=None, own_triangles=false, bounds=None, vertex_form=None, name="", keep_mesh=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -240,14 +241,14 @@ impl PyScene {
 
     /// Writes the scene to a file, which `Scene.open` and the program read.
     ///
-    /// Raises LodrayError: it cannot be written.
+    /// Raises LodrayFileError: it cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         beside(py, None, |_| self.0.save(&path))?.map_err(raised)
     }
 
     /// Writes a level as OBJ, 0 to the finest, which it is if None: a dictionary of level, and of how many vertices and faces there are.
     ///
-    /// Raises LodrayError: there is no such level, or it cannot be written.
+    /// Raises LodrayError: there is no such level; LodrayFileError: it cannot be written.
     #[pyo3(signature = (path, level=None))]
     fn export<'py>(
         &self,
@@ -262,7 +263,7 @@ impl PyScene {
                 counts = Some(export_level(&self.0, level, out)?);
                 Ok(())
             });
-            written.map(|()| counts).map_err(|error| refused(format!("cannot write {}: {error}", path.display())))
+            written.map(|()| counts).map_err(|error| of_file(format!("cannot write {}: {error}", path.display()), &error))
         })??;
         document(py, &counts.map(|counts| json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces })))
     }

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
-from shapes import ball, cube
+from shapes import ball, cube, described
 
 import lodray
 
@@ -132,6 +133,37 @@ def test_what_cannot_be_is_named(make: object, said: str, tmp_path: Path, monkey
         make()  # type: ignore[operator]
     assert said in str(raised.value), raised.value
     assert isinstance(raised.value, ValueError)
+
+
+def test_errors_of_files_are_those_of_python_too(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+    for make in (
+        lambda: lodray.Scene.open(tmp_path / "none.lod"),
+        lambda: lodray.Scene.build(tmp_path / "none.obj"),
+        lambda: lodray.Machine(tmp_path / "none.toml"),
+        lambda: lodray.paths(tmp_path / "none.toml"),
+        lambda: lodray.paths(described(file=str(tmp_path / "none.lod"))),
+        lambda: lodray.paths(described(file=str(tmp_path / "none.ply"))),
+        lambda: scene.save(tmp_path / "none" / "a.lod"),
+        lambda: scene.export(tmp_path / "none" / "a.obj"),
+    ):
+        with pytest.raises(FileNotFoundError, match="none") as raised:
+            make()
+        assert type(raised.value) is lodray.LodrayFileNotFoundError and isinstance(raised.value, lodray.LodrayFileError)
+        assert isinstance(raised.value, lodray.LodrayError) and isinstance(raised.value, ValueError)
+        assert raised.value.errno is None and raised.value.filename is None
+        again = pickle.loads(pickle.dumps(raised.value))
+        assert type(again) is type(raised.value) and str(again) == str(raised.value)
+    # A folder is there, and is no file to write.
+    for make in (lambda: scene.save(tmp_path), lambda: scene.export(tmp_path)):
+        with pytest.raises(OSError, match="it is not an ordinary file") as refused:
+            make()
+        assert type(refused.value) is lodray.LodrayFileError
+    # What is wrong within a file is no fault of the system's.
+    (tmp_path / "damaged.lod").write_bytes(b"no scene")
+    with pytest.raises(lodray.LodrayError, match="damaged.lod") as damaged:
+        lodray.Scene.open(tmp_path / "damaged.lod")
+    assert not isinstance(damaged.value, OSError)
 
 
 def test_plans_say_what_a_unit_needs() -> None:
