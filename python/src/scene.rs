@@ -437,7 +437,8 @@ impl PyScene {
     /// shading: of an image, "full", "level", "weighted" or "facets", which it is if None. method, knobs: as for `cast`.
     /// Without a camera the picture just holds the whole scene, in 1024 x 1024 pixels.
     ///
-    /// Raises LodrayError: an argument that is none of these, too many samples in all, or a camera from where the scene cannot be seen.
+    /// Raises LodrayError: an argument that is none of these, too many samples in all, a camera from where the scene cannot be seen, or rays, also
+    /// those of more samples, that are none of the job that the scene was pruned for.
     #[pyo3(signature = (camera=None, *, what="image", samples=1, shading=None, method="lod", progress=None, **knobs))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn render<'py>(

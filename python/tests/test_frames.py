@@ -322,3 +322,15 @@ def test_levels_are_of_mesh_files(scene: lodray.Scene, tmp_path: Path) -> None:
         lodray.paths(described(file=str(tmp_path / "ball.lod"), levels=3))
     made = lodray.paths(described(file=str(tmp_path / "ball.obj"), levels=1))
     assert made["image"].shape == (6, 8, 3)
+
+
+def test_pictures_of_pruned_scenes_have_the_rays_of_the_job(pruned: Path) -> None:
+    small, whole = lodray.Scene.open(pruned), lodray.Scene.open(pruned.parent / "whole.lod")
+    camera = small.camera(size=(48, 36), distance=8.0)
+    assert (small.render(camera, shading="full") == whole.render(camera, shading="full")).all()
+    no_such = "was pruned for a job, which has no such view"
+    with pytest.raises(lodray.LodrayError, match=f"{no_such}: size is 96x72"):
+        small.render(camera, shading="full", samples=4)
+    for what in ("image", "hits"):
+        with pytest.raises(lodray.LodrayError, match=f"{no_such}: size is 48x35"):
+            small.render(small.camera(size=(48, 35), distance=8.0), what=what)
