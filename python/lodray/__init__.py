@@ -7,7 +7,8 @@
 Start with help(lodray.Scene). Everything is what the program `lodray` does: same numbers, same words. Lengths are in the units
 of the mesh, angles in degrees, percentages of the diagonal of the mesh's box. What cannot be raises LodrayError, a ValueError, whose
 message names the argument, the key or the ray; what is of a wrong type raises TypeError. Where the system refuses a file, that is a
-LodrayFileError, an OSError too; of a file that is not there a LodrayFileNotFoundError, a FileNotFoundError too.
+LodrayFileError, an OSError too; of a file that is not there a LodrayFileNotFoundError, a FileNotFoundError too. What is lost of a mesh,
+or set aside, is said as a UserWarning: warnings.simplefilter("error") makes it an exception.
 
 lodray.RAY, the type of rays, has these fields, all float64 (96 bytes):
 

@@ -43,12 +43,16 @@ pub fn of_file(why: impl Into<String>, system: &io::Error) -> PyErr {
     }
 }
 
-/// The program's words with the names of arguments in place of those of options: `--max-error` is max_error.
+/// The program's words with the names of arguments in place of those of options: `--max-error` is max_error, and `--vertices` vertex_form.
 pub fn of_arguments(words: &str) -> String {
     let word = |word: &str| {
         let option = word.trim_start_matches('(');
         let before = &word[..word.len() - option.len()];
-        option.strip_prefix("--").map_or_else(|| word.to_owned(), |name| format!("{before}{}", name.replace('-', "_")))
+        match option.strip_prefix("--") {
+            Some("vertices") => format!("{before}vertex_form"),
+            Some(name) => format!("{before}{}", name.replace('-', "_")),
+            None => word.to_owned(),
+        }
     };
     words.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }

@@ -51,7 +51,7 @@ fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
 /// method, knobs, progress: as for `Scene.cast`.
 ///
 /// Raises LodrayError: the description cannot be, with file and key; a model that cannot be had, with its number, such as a scene that was pruned or
-/// a scene file beside `levels`; a method whose surface rays cannot leave; LodrayFileError: a file that cannot be read.
+/// a scene file beside `levels`; a method whose surface rays cannot leave; LodrayFileError: a file that cannot be read. What is lost of a mesh is a UserWarning.
 #[pyfunction]
 #[pyo3(signature = (description, models=None, *, camera=None, size=None, samples=None, depth=None, seed=None, time=0.0, starts=None, method="lod", progress=None, **knobs))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]

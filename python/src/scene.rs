@@ -15,6 +15,7 @@ use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, Trian
 use lodray::num::MAX_LEVELS;
 use lodray::rays::ModelSpace;
 use lodray::scene::BuildOptions;
+use lodray::study::Progress;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
@@ -93,7 +94,8 @@ impl PyScene {
     /// progress: called now and then as progress(what, done, of).
     ///
     /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so;
-    /// LodrayFileError: a file that cannot be read.
+    /// LodrayFileError: a file that cannot be read. What of the mesh is lost is a UserWarning, and so is a result that is further from it than max_error,
+    /// or folded.
     #[staticmethod]
     #[pyo3(signature = (mesh, faces=None, *, max_error=None, levels=None, base=None, crease_angle=None, own_triangles=false, bounds=None, vertex_form=None, name="", keep_mesh=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -145,11 +147,23 @@ impl PyScene {
             ..usual
         };
         let made = beside(py, progress, |told: &Told| {
-            let mesh = match &source {
-                Ok(path) => read(path).map_err(raised)?,
-                Err((vertices, faces)) => TriangleMesh::from_parts(vertices, faces, &[], Vec::new()).map_err(raised)?,
+            let (of, mesh) = match &source {
+                Ok(path) => (path.display().to_string(), read(path).map_err(raised)?),
+                Err((vertices, faces)) => {
+                    let mut mesh = TriangleMesh::from_parts(vertices, faces, &[], Vec::new()).map_err(raised)?;
+                    // As of a file.
+                    mesh.warnings.extend(mesh.report.flat().into_iter().chain(mesh.report.repeated()));
+                    ("mesh".to_owned(), mesh)
+                }
             };
+            let lose = |lost: &str| told.note(&format!("warning: {of}: {lost}"));
+            for lost in &mesh.warnings {
+                lose(lost);
+            }
             let scene = Scene::of_mesh(&mesh, &options, &|what, done, of| told.say(what, done, Some(of))).map_err(raised)?;
+            if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str() {
+                lose(lost);
+            }
             if !keep_mesh {
                 return Ok(scene);
             }
@@ -492,7 +506,8 @@ impl PyScene {
     /// a run that is started again goes on; one that is removed if None.
     ///
     /// `lodray.table` makes rows of the document for pandas and polars.
-    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run.
+    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run. Lines of out that are no
+    /// results, or another version's, are set aside in files beside them, which a UserWarning names; their views are done again.
     #[pyo3(signature = (distances, *, size=Size([1920, 1080]), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn error_time<'py>(
