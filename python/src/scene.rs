@@ -506,8 +506,9 @@ impl PyScene {
     /// a run that is started again goes on; one that is removed if None.
     ///
     /// `lodray.table` makes rows of the document for pandas and polars.
-    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run. Lines of out that are no
-    /// results, or another version's, are set aside in files beside them, which a UserWarning names; their views are done again.
+    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run, another run, of the
+    /// program or of Python, that is writing to out; LodrayFileError: a folder that cannot be made or written to. Lines of out that are no results, or
+    /// another version's, are set aside in files beside them, which a UserWarning names; their views are done again.
     #[pyo3(signature = (distances, *, size=Size([1920, 1080]), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn error_time<'py>(

@@ -240,6 +240,30 @@ def test_errors_against_time_are_rows_of_a_table(tmp_path: Path) -> None:
     assert again == document
 
 
+def test_a_folder_is_for_one_run_at_a_time(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+    folder = tmp_path / "study"
+
+    def measured(out: Path | None, **more: object) -> dict[str, object]:
+        return scene.error_time([2.0], size=(8, 8), values={"delta": [1]}, error_size=8, out=out, **more)  # type: ignore[arg-type]
+
+    refused: list[object] = []
+
+    def again(*_: object) -> None:
+        with pytest.raises(lodray.LodrayError, match="^out: .*study: another run is writing to this folder$") as raised:
+            measured(folder)
+        refused.append(raised.value)
+        # Others have other folders.
+        assert measured(None)["points"]
+
+    document = measured(folder, progress=again)
+    assert refused and not (folder / ".lodray-run.tmp").exists()
+    assert measured(folder) == document
+    (tmp_path / "file").write_text("")
+    with pytest.raises(lodray.LodrayFileError, match="^out: cannot make folder .*file: "):
+        measured(tmp_path / "file")
+
+
 def test_lines_that_are_set_aside_are_named_in_a_warning(tmp_path: Path) -> None:
     scene = lodray.Scene.generate("sphere", levels=1, base=8)
 
