@@ -6,7 +6,9 @@
 
 Start with help(lodray.Scene). Everything is what the program `lodray` does: same numbers, same words. Lengths are in the units
 of the mesh, angles in degrees, percentages of the diagonal of the mesh's box. What cannot be raises LodrayError, a ValueError, whose
-message names the argument, the key or the ray; what is of a wrong type raises TypeError.
+message names the argument, the key or the ray; what is of a wrong type raises TypeError. Where the system refuses a file, that is a
+LodrayFileError, an OSError too; of a file that is not there a LodrayFileNotFoundError, a FileNotFoundError too. What is lost of a mesh,
+or set aside, is said as a UserWarning: warnings.simplefilter("error") makes it an exception.
 
 lodray.RAY, the type of rays, has these fields, all float64 (96 bytes):
 
@@ -45,6 +47,8 @@ __all__ = [
     "RAY",
     "Camera",
     "LodrayError",
+    "LodrayFileError",
+    "LodrayFileNotFoundError",
     "Machine",
     "MachinePart",
     "Scene",
@@ -56,6 +60,18 @@ __all__ = [
     "paths",
     "table",
 ]
+
+
+class LodrayFileError(LodrayError, OSError):
+    """A file or a folder that the system refuses to read, to write or to make.
+
+    The message names it and has the system's words; errno and filename are None. `except LodrayError` and `except OSError` both catch it.
+    """
+
+
+class LodrayFileNotFoundError(LodrayFileError, FileNotFoundError):
+    """A file or a folder that is not there: a LodrayFileError that `except FileNotFoundError` catches too."""
+
 
 if TYPE_CHECKING:
     from lodray import cluster as cluster

@@ -1,11 +1,11 @@
 //! What an error costs.
 
-use crate::errors::{raised, refused};
+use crate::errors::{of_file, raised, raised_by, refused};
 use crate::machine::machines;
 use crate::method::MOST_SAMPLES;
 use crate::told::beside;
 use crate::values::{document as to_document, named, option, within};
-use lodray::format::Scene;
+use lodray::format::{Scene, Staging};
 use lodray::machine::Machine;
 use lodray::method::{METHODS, find};
 use lodray::rays::MAX_SIDE;
@@ -13,13 +13,14 @@ use lodray::report::result::MachineFacts;
 use lodray::run::{self, Compute};
 use lodray::scene::{MethodError, Target};
 use lodray::study::{
-    Cache, Chosen, ErrorTimePlan, JobLines, Jobs, Means, Measure, Measured, Origin, SceneJobs, StudyError, ViewJob, document,
-    error_time as measure, one_line,
+    Cache, Chosen, ErrorTimePlan, JobLines, Jobs, Means, Measure, Measured, Origin, SceneJobs, ViewJob, document, error_time as measure,
+    one_line,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::io;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -113,6 +114,12 @@ impl Study<'_, '_> {
     }
 }
 
+/// The error of a folder of which the system refuses something.
+fn failed(what: &str, folder: &Path) -> impl FnOnce(io::Error) -> PyErr {
+    let what = format!("out: {what} {}", folder.display());
+    move |error| of_file(format!("{what}: {error}"), &error)
+}
+
 /// Measures, and gives the document.
 pub fn error_time<'py>(
     py: Python<'py>,
@@ -122,9 +129,12 @@ pub fn error_time<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let plan = study.plan(scene, machine)?;
-    let removed = tempfile::tempdir()?;
+    let removed = tempfile::tempdir().map_err(failed("cannot make a folder in", &std::env::temp_dir()))?;
     let folder: &Path = study.out.as_deref().unwrap_or(removed.path());
-    std::fs::create_dir_all(folder)?;
+    std::fs::create_dir_all(folder).map_err(failed("cannot make folder", folder))?;
+    // As long as it lives no other run writes to the folder, be it of the program or of Python.
+    let staging = Staging::open(folder).map_err(failed("cannot write to", folder))?;
+    let _staging = staging.ok_or_else(|| refused(format!("out: {}: another run is writing to this folder", folder.display())))?;
     let made = beside(py, progress, |told| -> Result<_, Box<dyn Error + Send + Sync>> {
         let mut rows = JobLines::open(&folder.join(LINES), told)?;
         let open = |_: &SceneJobs| Ok(scene.clone());
@@ -136,9 +146,5 @@ pub fn error_time<'py>(
         let measured: Vec<&Measured> = rows.of(&keys).filter_map(|row| row.measured.as_ref()).collect();
         Ok(document(&plan, &measured))
     })?;
-    let made = made.map_err(|error| match error.downcast::<StudyError>() {
-        Ok(error) => raised(*error),
-        Err(error) => crate::errors::raised_by(&*error),
-    })?;
-    to_document(py, &made)
+    to_document(py, &made.map_err(|error| raised_by(&*error))?)
 }

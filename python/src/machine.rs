@@ -19,7 +19,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// attributes: `machine.l1.bytes` is read and set, and `dir(machine.l1)` lists what there is. docs/simulator.md says what each is.
 /// Machines with the same title and description are equal. One that is pickled keeps its changes; that of a file needs the file to be read again.
 ///
-/// Raises LodrayError: there is none of that name, a key is missing or unknown, or a value cannot be.
+/// Raises LodrayError: there is none of that name, a key is missing or unknown, or a value cannot be; LodrayFileError: a file that cannot be read.
 #[pyclass(name = "Machine", frozen, module = "lodray")]
 pub struct PyMachine(Mutex<Changed>);
 

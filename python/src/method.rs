@@ -249,6 +249,7 @@ impl PySceneMethod {
             return Err(refused(format!("samples: {samples} is no square")));
         }
         let sampled = camera.with_samples(side).map_err(raised)?;
+        check(scene, &sampled, delta).map_err(raised)?;
         let image = beside(py, progress, |told| {
             let shader = Shader::new(scene, &space, shading);
             Shot::of(method.method(), &shader, &space, [&camera, &sampled], delta, ("tracing", told)).image.into_raw()

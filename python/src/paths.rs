@@ -6,12 +6,11 @@ use crate::scene::PyScene;
 use crate::told::{Told, beside};
 use crate::values::{Size, document, from_python, to_python, whole_or_none, within};
 use lodray::format::Scene;
-use lodray::mesh::{RemeshOptions, read};
-use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, ModelTable, Paths, SceneFile, Starts, World};
+use lodray::paths::{Film, Instance, MOST_DEPTH, MOST_SAMPLES, Paths, SceneFile, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
-use lodray::scene::{BuildOptions, SceneMethod};
-use lodray::study::Progress;
-use lodray::study::pruned::check_normals;
+use lodray::scene::SceneMethod;
+use lodray::study::pruned::{check_normals, check_whole};
+use lodray::study::{Progress, models};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::error::Error;
@@ -30,20 +29,6 @@ fn description(of: &Bound<'_, PyAny>) -> PyResult<(SceneFile, PathBuf)> {
     Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
 }
 
-/// The model of a table, as the program has it.
-fn load(model: &ModelTable, beside: &Path) -> Result<Scene, Words> {
-    if let Some(options) = model.generate {
-        return Ok(Scene::generate(&options.into())?);
-    }
-    let path = beside.join(model.file.as_deref().unwrap_or_default());
-    if path.extension().is_some_and(|ending| ending == "lod") {
-        return Ok(Scene::open(&path)?);
-    }
-    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let remesh = Some(RemeshOptions { levels: model.levels, ..RemeshOptions::default() });
-    Ok(Scene::of_mesh(&read(&path)?, &BuildOptions { name, remesh, ..BuildOptions::default() }, &|_, _, _| ())?)
-}
-
 /// How rays leave surfaces: exact, independent, or a number of bounding radii.
 fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
     match of.cast::<PyString>().ok().map(|text| text.to_string()).as_deref() {
@@ -60,11 +45,13 @@ fn starts(of: &Bound<'_, PyAny>) -> PyResult<Starts> {
 ///
 /// description: the path of a description of models, materials, lights and cameras (TOML; docs/paths.md has the keys), or the same as a dictionary.
 /// models: scenes in place of its models' files, one for each, in its order. camera: by its name; the first if None.
+/// Scenes that were pruned for a job serve for neither: paths go anywhere.
 /// size, samples, depth, seed: in place of the description's: (width, height) in pixels, 1 to 2^20 paths for each pixel, 0 to 64 bounces, 0 to 2^64 - 1.
 /// time: where models stand that move, from 0 to 1. starts: how rays leave surfaces, "exact", "independent", or so many bounding radii above, 0 or more; "exact" if None.
 /// method, knobs, progress: as for `Scene.cast`.
 ///
-/// Raises LodrayError: the description cannot be, with file and key; a model that cannot be read; a method whose surface rays cannot leave.
+/// Raises LodrayError: the description cannot be, with file and key; a model that cannot be had, with its number, such as a scene that was pruned or
+/// a scene file beside `levels`; a method whose surface rays cannot leave; LodrayFileError: a file that cannot be read. What is lost of a mesh is a UserWarning.
 #[pyfunction]
 #[pyo3(signature = (description, models=None, *, camera=None, size=None, samples=None, depth=None, seed=None, time=0.0, starts=None, method="lod", progress=None, **knobs))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -129,20 +116,15 @@ fn film(
     told: &Told,
 ) -> Result<Film, Words> {
     let scenes = match given {
-        Some(given) => given,
-        None => {
-            let work = told.begin("reading models", Some(file.model.len() as u64));
-            let mut scenes: Vec<Scene> = Vec::new();
-            for (k, model) in file.model.iter().enumerate() {
-                // What stands in several places is loaded once.
-                let before = file.model[..k].iter().position(|before| model.is_of(before)).map(|before| scenes[before].clone());
-                scenes.push(before.map_or_else(|| load(model, folder), Ok).map_err(|error| format!("model[{k}]: {error}"))?);
-                work.step(1);
+        Some(given) => {
+            for (k, scene) in given.iter().enumerate() {
+                let checked = check_whole(scene).and_then(|()| check_normals(scene, "shading"));
+                checked.map_err(|error| format!("models[{k}]: {error}"))?;
             }
-            scenes
+            given
         }
+        None => models(file, folder, told)?,
     };
-    scenes.iter().try_for_each(|scene| check_normals(scene, "shading"))?;
     let table = file.camera(camera).ok_or_else(|| format!("camera: there is no '{}'", camera.unwrap_or_default()))?;
     let view = View { eye: Some(table.eye), target: Some(table.target), up: Some(table.up), fov: table.fov, ..View::default() };
     let camera = Camera::new(&view, &ModelSpace::of(&scenes[0]), file.picture.width, file.picture.height)?;

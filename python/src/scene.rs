@@ -3,7 +3,7 @@
 use crate::arrays::{contiguous, knobs, shaped, triples};
 use crate::camera::{Place, PyCamera, camera};
 use crate::error_time::{Study, error_time};
-use crate::errors::{raised, refused};
+use crate::errors::{of_file, raised, refused};
 use crate::method::PySceneMethod;
 use crate::plan::plan;
 use crate::told::{Told, beside};
@@ -15,6 +15,7 @@ use lodray::mesh::{DEFAULT_CREASE_ANGLE, DEFAULT_MAX_ERROR, RemeshOptions, Trian
 use lodray::num::MAX_LEVELS;
 use lodray::rays::ModelSpace;
 use lodray::scene::BuildOptions;
+use lodray::study::Progress;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
@@ -70,7 +71,7 @@ impl PyScene {
     /// So nothing may change the file in place while the scene is in use: hits would be wrong, and where it was cut short the process ends.
     /// `Scene.save` under the same name does no harm: it puts another file in its place.
     ///
-    /// Raises LodrayError: there is no such file, or it is damaged.
+    /// Raises LodrayFileError: there is no such file, or it cannot be read; LodrayError: it is damaged.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         Ok(Self(beside(py, None, |_| Scene::open(&path))?.map_err(raised)?))
@@ -92,7 +93,9 @@ impl PyScene {
     /// keep_mesh: keeps the mesh too, for the methods over it (input-bvh and others).
     /// progress: called now and then as progress(what, done, of).
     ///
-    /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so.
+    /// Raises LodrayError: an index out of range, a coordinate that is not finite, no triangle, or a mesh that cannot be remeshed so;
+    /// LodrayFileError: a file that cannot be read. What of the mesh is lost is a UserWarning, and so is a result that is further from it than max_error,
+    /// or folded.
     #[staticmethod]
     #[pyo3(signature = (mesh, faces=None, *, max_error=None, levels=None, base=None, crease_angle=None, own_triangles=false, bounds=None, vertex_form=None, name="", keep_mesh=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -144,11 +147,23 @@ impl PyScene {
             ..usual
         };
         let made = beside(py, progress, |told: &Told| {
-            let mesh = match &source {
-                Ok(path) => read(path).map_err(raised)?,
-                Err((vertices, faces)) => TriangleMesh::from_parts(vertices, faces, &[], Vec::new()).map_err(raised)?,
+            let (of, mesh) = match &source {
+                Ok(path) => (path.display().to_string(), read(path).map_err(raised)?),
+                Err((vertices, faces)) => {
+                    let mut mesh = TriangleMesh::from_parts(vertices, faces, &[], Vec::new()).map_err(raised)?;
+                    // As of a file.
+                    mesh.warnings.extend(mesh.report.flat().into_iter().chain(mesh.report.repeated()));
+                    ("mesh".to_owned(), mesh)
+                }
             };
+            let lose = |lost: &str| told.note(&format!("warning: {of}: {lost}"));
+            for lost in &mesh.warnings {
+                lose(lost);
+            }
             let scene = Scene::of_mesh(&mesh, &options, &|what, done, of| told.say(what, done, Some(of))).map_err(raised)?;
+            if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str() {
+                lose(lost);
+            }
             if !keep_mesh {
                 return Ok(scene);
             }
@@ -240,14 +255,14 @@ impl PyScene {
 
     /// Writes the scene to a file, which `Scene.open` and the program read.
     ///
-    /// Raises LodrayError: it cannot be written.
+    /// Raises LodrayFileError: it cannot be written.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         beside(py, None, |_| self.0.save(&path))?.map_err(raised)
     }
 
     /// Writes a level as OBJ, 0 to the finest, which it is if None: a dictionary of level, and of how many vertices and faces there are.
     ///
-    /// Raises LodrayError: there is no such level, or it cannot be written.
+    /// Raises LodrayError: there is no such level; LodrayFileError: it cannot be written.
     #[pyo3(signature = (path, level=None))]
     fn export<'py>(
         &self,
@@ -262,7 +277,7 @@ impl PyScene {
                 counts = Some(export_level(&self.0, level, out)?);
                 Ok(())
             });
-            written.map(|()| counts).map_err(|error| refused(format!("cannot write {}: {error}", path.display())))
+            written.map(|()| counts).map_err(|error| of_file(format!("cannot write {}: {error}", path.display()), &error))
         })??;
         document(py, &counts.map(|counts| json!({ "level": level, "vertices": counts.vertices, "faces": counts.faces })))
     }
@@ -436,7 +451,8 @@ impl PyScene {
     /// shading: of an image, "full", "level", "weighted" or "facets", which it is if None. method, knobs: as for `cast`.
     /// Without a camera the picture just holds the whole scene, in 1024 x 1024 pixels.
     ///
-    /// Raises LodrayError: an argument that is none of these, too many samples in all, or a camera from where the scene cannot be seen.
+    /// Raises LodrayError: an argument that is none of these, too many samples in all, a camera from where the scene cannot be seen, or rays, also
+    /// those of more samples, that are none of the job that the scene was pruned for.
     #[pyo3(signature = (camera=None, *, what="image", samples=1, shading=None, method="lod", progress=None, **knobs))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn render<'py>(
@@ -490,7 +506,9 @@ impl PyScene {
     /// a run that is started again goes on; one that is removed if None.
     ///
     /// `lodray.table` makes rows of the document for pandas and polars.
-    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run.
+    /// Raises LodrayError: an argument that is none of these, a knob by which no method trades error, a method that cannot run, another run, of the
+    /// program or of Python, that is writing to out; LodrayFileError: a folder that cannot be made or written to. Lines of out that are no results, or
+    /// another version's, are set aside in files beside them, which a UserWarning names; their views are done again.
     #[pyo3(signature = (distances, *, size=Size([1920, 1080]), methods=vec!["lod".to_owned(), "bvh".to_owned()], machine=None, compute="free", values=None, samples=1, error_size=192, most_samples=0, out=None, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn error_time<'py>(

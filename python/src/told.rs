@@ -1,7 +1,11 @@
 //! Work while the interpreter is free: who waits is told how far it is, and may stop it.
 
+use crate::errors::of_arguments;
 use lodray::study::{Progress, Work};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use std::ffi::CString;
+use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -18,12 +22,14 @@ const STACK: usize = 8 << 20;
 /// Rays below which a thread would take longer than they do.
 pub const FEW: u64 = 1 << 14;
 
-/// How far work is, and whether it is to go on.
+/// How far work is, whether it is to go on, and what is to be said of it.
 #[derive(Default)]
 pub struct Told {
     stopped: AtomicBool,
     done: AtomicU64,
     now: Mutex<(String, Option<u64>)>,
+    /// Lines on what was lost or set aside.
+    noted: Mutex<Vec<String>>,
 }
 
 /// What unwinds through work that somebody stopped: no panic, and nothing is printed.
@@ -64,6 +70,17 @@ impl Told {
         }
         Ok(())
     }
+
+    /// Raises what was noted as warnings at the line of Python that called. One that a filter makes an error of is the last.
+    fn warn(&self, py: Python<'_>) -> PyResult<()> {
+        let noted = take(&mut *self.noted.lock().unwrap_or_else(PoisonError::into_inner));
+        let category = py.get_type::<PyUserWarning>();
+        for line in noted {
+            let words = line.strip_prefix("warning: ").or_else(|| line.strip_prefix("note: ")).unwrap_or(&line);
+            PyErr::warn(py, &category, &CString::new(of_arguments(words).replace('\0', " "))?, 1)?;
+        }
+        Ok(())
+    }
 }
 
 impl Progress for Told {
@@ -72,7 +89,9 @@ impl Progress for Told {
         Box::new(Part(self))
     }
 
-    fn note(&self, _: &str) {}
+    fn note(&self, line: &str) {
+        self.noted.lock().unwrap_or_else(PoisonError::into_inner).push(line.to_owned());
+    }
 }
 
 /// Work that has begun.
@@ -88,15 +107,15 @@ impl Work for Part<'_> {
     }
 }
 
-/// Does short work, while other threads of Python may run.
+/// Does short work, of which nothing is noted, while other threads of Python may run.
 pub fn at_once<T: Send>(py: Python<'_>, work: impl FnOnce(&Told) -> T + Send) -> T {
     py.detach(|| work(&Told::default()))
 }
 
-/// Does work on another thread, while this one calls `progress` and listens to signals.
+/// Does work on another thread, while this one calls `progress` and listens to signals. What is noted of it is raised as warnings when it is over, however it ends.
 ///
 /// # Errors
-/// What was raised meanwhile: the work is stopped then.
+/// What was raised meanwhile: the work is stopped then. A warning that a filter makes an error of.
 pub fn beside<T: Send>(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, work: impl FnOnce(&Told) -> T + Send) -> PyResult<T> {
     let (told, progress) = (Told::default(), progress.map(|progress| progress.clone().unbind()));
     let (told, progress) = (&told, progress.as_ref());
@@ -118,9 +137,10 @@ pub fn beside<T: Send>(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, work
                 }
             }
             let done = worker.join().unwrap_or_else(Err);
+            let warned = Python::attach(|py| told.warn(py));
             match (raised, done) {
                 (Some(raised), _) => Err(raised),
-                (None, Ok(done)) => Python::attach(|py| told.show(py, progress)).map(|()| done),
+                (None, Ok(done)) => Python::attach(|py| told.show(py, progress)).and(warned).map(|()| done),
                 (None, Err(panic)) => resume_unwind(panic),
             }
         })

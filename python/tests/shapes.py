@@ -1,4 +1,4 @@
-"""Small meshes that tests share."""
+"""Small meshes, and a description of one, that tests share."""
 
 from __future__ import annotations
 
@@ -38,3 +38,13 @@ def special(mesh: Mesh) -> NDArray[np.float64]:
     corners = vertices[faces]
     middles = [(corners[:, k] + corners[:, (k + 1) % 3]) / 2 for k in range(3)]
     return np.concatenate([vertices, *middles, corners.mean(axis=1)])
+
+
+def described(**model: object) -> dict[str, object]:
+    """A description of one model."""
+    return {
+        "picture": {"width": 8, "height": 6, "samples": 1, "depth": 1},
+        "camera": [{"eye": [0, 0, 4], "target": [0, 0, 0]}],
+        "model": [model],
+        "environment": {"zenith": [1, 1, 1], "horizon": [1, 1, 1], "ground": [1, 1, 1]},
+    }

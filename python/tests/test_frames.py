@@ -4,23 +4,43 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import pickle
+import shutil
 import signal
+import subprocess
 import threading
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from shapes import described
 
 import lodray
 
+PROGRAM = os.environ.get("LODRAY_PROGRAM") or shutil.which("lodray")
 COPIES = (copy.copy, copy.deepcopy, lambda of: pickle.loads(pickle.dumps(of)), lambda of: pickle.loads(pickle.dumps(of, protocol=0)))
 
 
 @pytest.fixture(scope="module")
 def scene() -> lodray.Scene:
     return lodray.Scene.generate("sphere", levels=4, base=128)
+
+
+@pytest.fixture(scope="module")
+def pruned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a scene for one view alone, from 8 bounding radii in 48 x 36 pixels."""
+    if PROGRAM is None:
+        pytest.skip("no program: set LODRAY_PROGRAM, as scripts/python does")
+    folder = tmp_path_factory.mktemp("pruned")
+    for words in (
+        "generate sphere --levels 3 --base 32 -o whole.lod",
+        "plan whole.lod --distance 8 --size 48x36 -o plan.toml",
+        "prune whole.lod --plan plan.toml -o small.lod",
+    ):
+        subprocess.run([PROGRAM, *words.split()], cwd=folder, check=True, capture_output=True)
+    return folder / "small.lod"
 
 
 def test_cameras_are_what_they_are_asked_for(scene: lodray.Scene) -> None:
@@ -284,3 +304,33 @@ def test_paths_are_pictures_of_a_description(scene: lodray.Scene) -> None:
         lodray.paths(description)
     with pytest.raises(lodray.LodrayError, match="picture.samples"):
         lodray.paths(description | {"picture": {"samples": 0}}, [scene, scene])
+
+
+def test_paths_take_no_pruned_scene(pruned: Path) -> None:
+    said = "job: the scene was pruned for the rays of a job, and is not there for anything else"
+    with pytest.raises(lodray.LodrayError, match=rf"^model\[0\]: .*small\.lod: {said}"):
+        lodray.paths(described(file=str(pruned)))
+    with pytest.raises(lodray.LodrayError, match=rf"^models\[0\]: {said}"):
+        lodray.paths(described(file="other.lod"), [lodray.Scene.open(pruned)])
+    assert lodray.paths(described(file=str(pruned.parent / "whole.lod")))["image"].shape == (6, 8, 3)
+
+
+def test_levels_are_of_mesh_files(scene: lodray.Scene, tmp_path: Path) -> None:
+    scene.save(tmp_path / "ball.lod")
+    scene.export(tmp_path / "ball.obj", level=1)
+    with pytest.raises(lodray.LodrayError, match=r"^model\[0\]: levels is of mesh files; .*ball\.lod has its own$"):
+        lodray.paths(described(file=str(tmp_path / "ball.lod"), levels=3))
+    made = lodray.paths(described(file=str(tmp_path / "ball.obj"), levels=1))
+    assert made["image"].shape == (6, 8, 3)
+
+
+def test_pictures_of_pruned_scenes_have_the_rays_of_the_job(pruned: Path) -> None:
+    small, whole = lodray.Scene.open(pruned), lodray.Scene.open(pruned.parent / "whole.lod")
+    camera = small.camera(size=(48, 36), distance=8.0)
+    assert (small.render(camera, shading="full") == whole.render(camera, shading="full")).all()
+    no_such = "was pruned for a job, which has no such view"
+    with pytest.raises(lodray.LodrayError, match=f"{no_such}: size is 96x72"):
+        small.render(camera, shading="full", samples=4)
+    for what in ("image", "hits"):
+        with pytest.raises(lodray.LodrayError, match=f"{no_such}: size is 48x35"):
+            small.render(small.camera(size=(48, 35), distance=8.0), what=what)

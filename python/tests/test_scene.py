@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
-from shapes import ball, cube
+from shapes import ball, cube, described
 
 import lodray
 
@@ -134,6 +136,82 @@ def test_what_cannot_be_is_named(make: object, said: str, tmp_path: Path, monkey
     assert isinstance(raised.value, ValueError)
 
 
+def said(record: list[warnings.WarningMessage]) -> list[str]:
+    assert all(one.category is UserWarning and one.filename == __file__ for one in record)
+    return [str(one.message) for one in record]
+
+
+def test_what_a_mesh_loses_is_a_warning(tmp_path: Path) -> None:
+    # A triangle that is there twice, a line, and a triangle without area.
+    vertices, faces = cube()
+    faces = np.concatenate([faces, faces[:1], [[0, 0, 1]]])
+    path = tmp_path / "box.obj"
+    rows = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    path.write_text("\n".join([*rows, "l 1 2"]) + "\n")
+    for mesh, of in [((path,), str(path)), ((vertices, faces), "mesh")]:
+        with pytest.warns(UserWarning) as record:
+            scene = lodray.Scene.build(*mesh, own_triangles=True)
+        lines = said(list(record))
+        assert scene.info["base_triangles"] == 12 and all(line.startswith(f"{of}: ") for line in lines)
+        for lost in ("1 of its 14 triangles have the corners of another", "1 of its 14 triangles have no area"):
+            assert any(lost in line for line in lines), lines
+        assert any("only faces (f) are kept" in line for line in lines) == (of != "mesh")
+    with pytest.warns(UserWarning) as record:
+        lodray.paths(described(file=str(path), levels=1))
+    assert all(line.startswith(f"{path}: ") for line in said(list(record)))
+    # Whoever wants no warnings has an exception in place of the scene.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(UserWarning, match="box.obj: "):
+            lodray.Scene.build(path, own_triangles=True)
+        with pytest.raises(UserWarning, match="mesh: "):
+            lodray.Scene.build(vertices, faces, own_triangles=True)
+        lodray.Scene.build(*cube(), own_triangles=True)
+
+
+def test_what_remeshing_loses_is_a_warning(tmp_path: Path) -> None:
+    vertices, faces = ball()
+    with pytest.warns(UserWarning) as record:
+        scene = lodray.Scene.build(vertices, faces, levels=1, base=20)
+    (line,) = said(list(record))
+    assert line.startswith("mesh: it is up to ") and "(wanted: 0.3 %)" in line and "; leave base out, or try a larger one" in line
+    assert line.replace("mesh: ", "").split(";")[0] == scene.info["origin"]["remesh"]["warning"].split(";")[0]
+    lodray.Scene.exact(vertices, faces)[0].export(tmp_path / "ball.obj")
+    with pytest.warns(UserWarning, match="ball.obj: it is up to "):
+        lodray.Scene.build(tmp_path / "ball.obj", levels=1, base=20)
+
+
+def test_errors_of_files_are_those_of_python_too(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+    for make in (
+        lambda: lodray.Scene.open(tmp_path / "none.lod"),
+        lambda: lodray.Scene.build(tmp_path / "none.obj"),
+        lambda: lodray.Machine(tmp_path / "none.toml"),
+        lambda: lodray.paths(tmp_path / "none.toml"),
+        lambda: lodray.paths(described(file=str(tmp_path / "none.lod"))),
+        lambda: lodray.paths(described(file=str(tmp_path / "none.ply"))),
+        lambda: scene.save(tmp_path / "none" / "a.lod"),
+        lambda: scene.export(tmp_path / "none" / "a.obj"),
+    ):
+        with pytest.raises(FileNotFoundError, match="none") as raised:
+            make()
+        assert type(raised.value) is lodray.LodrayFileNotFoundError and isinstance(raised.value, lodray.LodrayFileError)
+        assert isinstance(raised.value, lodray.LodrayError) and isinstance(raised.value, ValueError)
+        assert raised.value.errno is None and raised.value.filename is None
+        again = pickle.loads(pickle.dumps(raised.value))
+        assert type(again) is type(raised.value) and str(again) == str(raised.value)
+    # A folder is there, and is no file to write.
+    for make in (lambda: scene.save(tmp_path), lambda: scene.export(tmp_path)):
+        with pytest.raises(OSError, match="it is not an ordinary file") as refused:
+            make()
+        assert type(refused.value) is lodray.LodrayFileError
+    # What is wrong within a file is no fault of the system's.
+    (tmp_path / "damaged.lod").write_bytes(b"no scene")
+    with pytest.raises(lodray.LodrayError, match="damaged.lod") as damaged:
+        lodray.Scene.open(tmp_path / "damaged.lod")
+    assert not isinstance(damaged.value, OSError)
+
+
 def test_plans_say_what_a_unit_needs() -> None:
     scene = lodray.Scene.generate("sphere", levels=3, base=32)
     plan = scene.plan()
@@ -160,6 +238,51 @@ def test_errors_against_time_are_rows_of_a_table(tmp_path: Path) -> None:
     assert (tmp_path / "study" / "views.jsonl").is_file() and seen
     again = scene.error_time([2.0, 8.0], size=(64, 48), values={"delta": [1, 4]}, error_size=64, out=tmp_path / "study")
     assert again == document
+
+
+def test_a_folder_is_for_one_run_at_a_time(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+    folder = tmp_path / "study"
+
+    def measured(out: Path | None, **more: object) -> dict[str, object]:
+        return scene.error_time([2.0], size=(8, 8), values={"delta": [1]}, error_size=8, out=out, **more)  # type: ignore[arg-type]
+
+    refused: list[object] = []
+
+    def again(*_: object) -> None:
+        with pytest.raises(lodray.LodrayError, match="^out: .*study: another run is writing to this folder$") as raised:
+            measured(folder)
+        refused.append(raised.value)
+        # Others have other folders.
+        assert measured(None)["points"]
+
+    document = measured(folder, progress=again)
+    assert refused and not (folder / ".lodray-run.tmp").exists()
+    assert measured(folder) == document
+    (tmp_path / "file").write_text("")
+    with pytest.raises(lodray.LodrayFileError, match="^out: cannot make folder .*file: "):
+        measured(tmp_path / "file")
+
+
+def test_lines_that_are_set_aside_are_named_in_a_warning(tmp_path: Path) -> None:
+    scene = lodray.Scene.generate("sphere", levels=1, base=8)
+
+    def measured() -> dict[str, object]:
+        return scene.error_time([2.0], size=(8, 8), values={"delta": [1]}, error_size=8, out=tmp_path)
+
+    document = measured()
+    lines = tmp_path / "views.jsonl"
+    good = lines.read_text()
+    lines.write_text(good + "no line\n")
+    with pytest.warns(UserWarning, match=r"views\.jsonl: line 2 is no result: .*set aside in .*views\.bad\.jsonl"):
+        again = measured()
+    assert again == document and lines.read_text() == good and (tmp_path / "views.bad.jsonl").read_text() == "no line\n"
+    lines.write_text(good + "no line\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(UserWarning, match="set aside in"):
+            measured()
+        assert measured() == document
 
 
 @pytest.mark.parametrize(

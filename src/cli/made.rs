@@ -1,22 +1,18 @@
 //! What a description comes to: models, a camera, a world.
 
 use crate::cli::bars::Bars;
-use crate::cli::common::is_quiet;
 use crate::cli::folder::with_named;
-use crate::cli::form::FormArgs;
 use crate::cli::generate;
-use crate::cli::output::{busy, open, toml_in_one_line, warn};
+use crate::cli::output::toml_in_one_line;
 use anyhow::{Context, ensure};
 use glam::DVec3;
 use lodray::format::Scene;
-use lodray::mesh::{Placement, RemeshOptions, read};
+use lodray::mesh::Placement;
 use lodray::method::Method;
-use lodray::paths::{CameraTable, Instance, ModelTable, Paths, Pose, SceneFile, SceneFileError, Starts, World};
+use lodray::paths::{CameraTable, Instance, Paths, Pose, SceneFile, SceneFileError, Starts, World};
 use lodray::rays::{Camera, ModelSpace, View};
 use lodray::report::result::SceneFacts;
-use lodray::scene::BuildOptions;
-use lodray::study::pruned::check_normals;
-use lodray::study::{Cache, Chosen};
+use lodray::study::{Cache, Chosen, models};
 use std::collections::HashSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -54,15 +50,11 @@ fn beside(description: &Path) -> &Path {
 
 /// The models of a description, in its order. What stands in several places is loaded once.
 pub fn scenes(description: &Path, file: &SceneFile) -> anyhow::Result<Vec<Scene>> {
-    let mut scenes: Vec<Scene> = Vec::new();
     for (k, model) in file.model.iter().enumerate() {
-        let scene = match file.model[..k].iter().position(|before| model.is_of(before)) {
-            Some(before) => scenes[before].clone(),
-            None => load(model, beside(description)).with_context(|| format!("{}: model[{k}]", description.display()))?,
-        };
-        scenes.push(scene);
+        let generated = model.generate.map_or(Ok(()), |options| generate::check(&options.into()));
+        generated.with_context(|| format!("{}: model[{k}]", description.display()))?;
     }
-    Ok(scenes)
+    models(file, beside(description), &Bars).with_context(|| description.display().to_string())
 }
 
 /// The models by a method whose hits rays can leave. What stands in several places is built once.
@@ -160,30 +152,6 @@ fn corners(space: &ModelSpace) -> [DVec3; 8] {
         let side = |k: usize| f64::from(if corner >> k & 1 == 1 { space.hi[k] } else { space.lo[k] });
         DVec3::from_array([0, 1, 2].map(|k| space.placement.offset[k] + space.placement.scale * side(k)))
     })
-}
-
-/// The model of a table.
-fn load(model: &ModelTable, beside: &Path) -> anyhow::Result<Scene> {
-    if let Some(options) = model.generate {
-        return generate::make(&options.into(), FormArgs::default());
-    }
-    let path = beside.join(model.file.as_deref().unwrap_or_default());
-    if path.extension().is_some_and(|ending| ending == "lod") {
-        ensure!(model.levels.is_none(), "levels is of mesh files; {} has its own", path.display());
-        let scene = open(&path)?;
-        check_normals(&scene, "shading")?;
-        return Ok(scene);
-    }
-    let mesh = busy("reading", || read(&path))?;
-    mesh.warnings.iter().for_each(|lost| warn(&format!("warning: {}: {lost}", path.display())));
-    let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let remesh = Some(RemeshOptions { levels: model.levels, ..RemeshOptions::default() });
-    let options = BuildOptions { name, remesh, ..BuildOptions::default() };
-    let scene = busy("remeshing", || Scene::of_mesh(&mesh, &options, &|_, _, _| ())).with_context(|| path.display().to_string())?;
-    if let Some(lost) = scene.meta().origin["remesh"]["warning"].as_str().filter(|_| !is_quiet()) {
-        warn(&format!("warning: {}: {lost}", path.display()));
-    }
-    Ok(scene)
 }
 
 /// What the description says of the camera that was asked for.

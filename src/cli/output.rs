@@ -6,7 +6,7 @@ use anyhow::Context;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lodray::format::{Scene, remove_abandoned, temporary_beside, write_and_rename};
 use lodray::mesh::MeshFormat;
-use lodray::study::pruned::check_normals;
+use lodray::study::pruned::{check_normals, check_whole};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -130,11 +130,7 @@ pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
 /// Opens a scene file for any rays: refuses one that was pruned for a job.
 pub fn open(path: &Path) -> anyhow::Result<Scene> {
     let scene = open_any(path)?;
-    anyhow::ensure!(
-        scene.meta().is_whole(),
-        "{}: job: the scene was pruned for the rays of a job, and is not there for anything else (lodray info lists them)",
-        path.display()
-    );
+    check_whole(&scene).with_context(|| path.display().to_string())?;
     check_normals(&scene, "this")?;
     Ok(scene)
 }

@@ -65,6 +65,9 @@ pub enum PrunedError {
         /// What needs them.
         what: &'static str,
     },
+    /// Rays of any kind.
+    #[error("job: the scene was pruned for the rays of a job, and is not there for anything else (lodray info lists them)")]
+    Whole,
 }
 
 /// Refuses rays of lod on a scene that was pruned for others: a camera's at a quality.
@@ -123,6 +126,14 @@ pub fn check_shading(scene: &Scene, shading: Shading) -> Result<(), PrunedError>
         return Err(PrunedError::Facets { scene: scene.meta().name.clone() });
     }
     Ok(())
+}
+
+/// Refuses a scene that was pruned, for what may trace any rays.
+///
+/// # Errors
+/// It was.
+pub fn check_whole(scene: &Scene) -> Result<(), PrunedError> {
+    if scene.meta().is_whole() { Ok(()) } else { Err(PrunedError::Whole) }
 }
 
 /// Refuses a scene without normals, for what needs them.
