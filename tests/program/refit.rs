@@ -196,7 +196,7 @@ fn what_cannot_be_is_refused_and_nothing_is_written() {
     desk.refused("refit a.lod few.npy -o b.lod", FAILS, &["few.npy", "2 positions", &vertices]);
     desk.refused("refit a.lod flat.npy -o b.lod", FAILS, &["flat.npy", "shape [6]", "vertices x 3"]);
     desk.refused("refit a.lod nan.npy -o b.lod", FAILS, &["nan.npy", "position 2 is"]);
-    desk.refused("refit a.lod bad.obj -o b.lod", FAILS, &["bad.obj", "line 2", "three numbers"]);
+    desk.refused("refit a.lod bad.obj -o b.lod", FAILS, &["bad.obj", "line 2", "x is not a number"]);
     desk.refused("refit a.lod text.npy -o b.lod", FAILS, &["text.npy", "no array"]);
     desk.refused("refit a.lod none.npy -o b.lod", FAILS, &["none.npy"]);
     desk.refused("refit a.lod a.stl -o b.lod", FAILS, &["a.stl", ".npy, .obj or .ply"]);
