@@ -380,11 +380,15 @@ fn the_documented_units_are_the_tables() {
     let documented = include_str!("../../../../docs/energy.md");
     let units = [&lod::METHOD, &bvh::METHOD, &bvh::METHOD_WIDE, &bvh::METHOD_SIX].map(|method| method.unit.unwrap());
     let sixteen = Hardware { contexts: 16, ..Hardware::default() };
-    let leaks = units.map(|unit| format!("{:.1}", table.unit_leakage_mw(unit, &sixteen)));
-    let clocks = units.map(|unit| format!("{:.1}", table.unit_clock_pj(unit, &sixteen)));
-    let said = |of: &[String; 4]| format!("{}, {}, {} and {}", of[0], of[1], of[2], of[3]);
-    let line = format!("With 16 contexts they leak {} mW and their clocks take {} pJ a cycle.", said(&leaks), said(&clocks));
-    assert!(documented.contains(&line), "{line}");
+    let copies = Hardware { setup_copies: 3, divide_copies: 2, ..sixteen };
+    assert_eq!(Machine::shipped("haydel2023").unwrap().units.config(), copies);
+    for (said_of, hardware) in [("With 16 contexts", sixteen), ("as the units of `haydel2023` have,", copies)] {
+        let leaks = units.map(|unit| format!("{:.1}", table.unit_leakage_mw(unit, &hardware)));
+        let clocks = units.map(|unit| format!("{:.1}", table.unit_clock_pj(unit, &hardware)));
+        let said = |of: &[String; 4]| format!("{}, {}, {} and {}", of[0], of[1], of[2], of[3]);
+        let line = format!("{said_of} they leak {} mW and their clocks take {} pJ a cycle.", said(&leaks), said(&clocks));
+        assert!(documented.contains(&line), "{line}");
+    }
     let pj = |operation| table.operation_pj(operation, &Hardware::DEFAULT);
     let boxes = |of| 4.0 * pj(of) + pj(Operation::ChildSort);
     let [plain, wide] = [boxes(Operation::BoxTest), boxes(Operation::BoxTest32)];
