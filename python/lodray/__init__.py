@@ -62,7 +62,7 @@ __all__ = [
 ]
 
 
-class LodrayFileError(LodrayError, OSError):
+class LodrayFileError(OSError, LodrayError):
     """A file or a folder that the system refuses to read, to write or to make.
 
     The message names it and has the system's words; errno and filename are None. `except LodrayError` and `except OSError` both catch it.
