@@ -13,7 +13,7 @@ const SAMPLES: u32 = 64;
 
 /// Paths of a scene as a frame for machines.
 ///
-/// A batch has the paths of a tile of pixels, those of [`SAMPLES`] of each at most, so that memory does not grow with them: first all rays of the camera, then all that leave their hits, and so on. A ray waits for the one behind whose hit it starts.
+/// A batch has the paths of a tile of pixels, those of 64 samples of each at most, so that memory does not grow with them: first all rays of the camera, then all that leave their hits, and so on. A ray waits for the one behind whose hit it starts.
 pub struct PathFrame<'a> {
     paths: &'a Paths<'a>,
     memory: WorldMemory,
